@@ -1,0 +1,12 @@
+/* asset.c - see asset.h. */
+#include "base/asset.h"
+
+#include <string.h>
+
+const struct asset *asset_find(const char *name)
+{
+    for (const struct asset *asset = asset_list; asset->name; asset++) {
+        if (strcmp(asset->name, name) == 0) return asset;
+    }
+    return NULL;
+}

@@ -1,0 +1,8 @@
+/* clock.h - wall and processor time.  Simulations never read either. */
+#ifndef CLOCK_H
+#define CLOCK_H
+
+double clock_wall(void);        /* seconds, monotonic: not moved by changes of the date */
+double clock_process(void);     /* processor seconds of all threads of this process */
+
+#endif

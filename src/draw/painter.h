@@ -1,0 +1,50 @@
+/* painter.h - turns grains, walls and fields into a picture; knows no model.
+ *
+ * One painter serves one size and one theme for a whole film: shaders, glyphs and buffers are
+ * made once.
+ */
+#ifndef PAINTER_H
+#define PAINTER_H
+
+#include "draw/image.h"
+#include "model/field.h"
+#include "model/grains.h"
+#include "scene/scene.h"
+
+#include <stdbool.h>
+
+struct painter;
+
+/* How grains are drawn: chosen by count, or forced (tests, bench). */
+enum painter_path { PAINTER_AUTO, PAINTER_GL, PAINTER_SPLATTER };
+
+/* Variables of labels besides {t} {n} {title} {units}: {steps} {model} {method} {seed} ... */
+struct painter_variable { const char *name; char text[64]; };
+
+struct picture {
+    const struct scene  *scene;         /* walls, units, gravity; walls as they stand at time t */
+    const struct view   *view;          /* usually &scene->view, perhaps changed by options */
+    const struct grains *grains;        /* NULL: none */
+    const struct field  *field;         /* drawn beneath the grains; NULL: none */
+    double time;
+    double range[2];                    /* of the grains' colours; NANs: of this frame */
+    double field_range[2];              /* of the field; NANs: of this field */
+    const struct painter_variable *variables;
+    uint32_t variable_count;
+    enum painter_path path;
+};
+
+/* A painter for frames of view->size pixels. */
+struct painter *painter_create(const struct view *view, struct error *error);
+void painter_destroy(struct painter *painter);
+
+/* Draws one frame into `image`, which must have the painter's size. */
+bool painter_frame(struct painter *painter, const struct picture *picture, struct image *image,
+                   struct error *error);
+
+/* What a grain is coloured by (view->color) as one number, and what to call it. */
+double painter_value(const struct view *view, const struct grains *grains, uint32_t i);
+const char *painter_value_name(const struct view *view);        /* "speed" */
+const char *painter_value_dimension(const struct view *view);   /* "speed", "1/time", ... */
+
+#endif

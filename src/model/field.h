@@ -1,0 +1,24 @@
+/* field.h - numbers on a rectangular grid: what maps are made of. */
+#ifndef FIELD_H
+#define FIELD_H
+
+#include "base/error.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct field {
+    char     name[32];          /* "density" */
+    char     label[96];         /* with unit and "snapshot" or "mean t = 1 .. 2" for pictures */
+    char     unit[24];
+    double   time;
+    double   x0, y0, cell;      /* corner of the grid and its constant */
+    uint32_t nx, ny, components;        /* 1 scalar, 2 vector */
+    double  *values;            /* [component][iy][ix]; row 0 is the lowest; NAN: no grains there */
+};
+
+bool field_create(struct field *field, double x0, double y0, double cell, uint32_t nx,
+                  uint32_t ny, uint32_t components, struct error *error);
+void field_free(struct field *field);
+
+#endif

@@ -1,0 +1,125 @@
+/* simulation.c - see simulation.h. */
+#include "model/simulation.h"
+
+#include <assert.h>
+
+static bool refuse_effects(const struct model *model, const struct scene *scene,
+                           struct error *error)
+{
+    for (uint32_t p = 0; p < scene->phase_count; p++) {
+        const effects_t missing = scene->phases[p]->effects & ~model->effects;
+        if (!missing) continue;
+        char able[200];
+        model_names(scene->phases[p]->effects, able, sizeof able);
+        return error_set_code(error, EXIT_SCENE, "%s: model '%s' cannot do %s (%s); "
+            "models that can run this scene: %s; or take it out of the scene", scene->path,
+            model->name, effect_word(missing), effect_doc(missing), able);
+    }
+    return true;
+}
+
+bool simulation_create(struct simulation *sim, const struct model *model,
+                       const struct scene *scene, struct error *error)
+{
+    *sim = (struct simulation){.model = model, .scene = scene, .phase_scene = scene};
+    if (!refuse_effects(model, scene, error)) return false;
+    sim->state = model->create(scene, error);
+    return sim->state != NULL;
+}
+
+void simulation_destroy(struct simulation *sim)
+{
+    if (sim->state) sim->model->destroy(sim->state);
+    *sim = (struct simulation){0};
+}
+
+/* Replaces the state by one created for `phase`'s scene that goes on where the old one is. */
+static bool enter_phase(struct simulation *sim, uint32_t phase, struct error *error)
+{
+    struct archive save, load;
+    archive_begin_save(&save);
+    sim->model->archive(sim->state, &save);
+    void *next = sim->model->create(sim->scene->phases[phase], error);
+    if (!next) {
+        archive_end(&save);
+        return false;
+    }
+    archive_begin_load(&load, save.bytes, save.size);
+    if (save.failed) archive_fail(&load, save.reason);
+    else sim->model->archive(next, &load);
+    archive_end(&save);
+    if (load.failed) {
+        sim->model->destroy(next);
+        return error_set(error, "phase %u cannot take over the state: %s", phase, load.reason);
+    }
+    sim->model->destroy(sim->state);
+    sim->state = next;
+    sim->phase = phase;
+    sim->phase_scene = sim->scene->phases[phase];
+    return true;
+}
+
+enum advance simulation_advance(struct simulation *sim, double t_end, uint64_t budget,
+                                struct error *error)
+{
+    const struct scene *scene = sim->scene;
+    for (;;) {
+        const uint32_t next = sim->phase + 1;
+        const bool changes = next < scene->phase_count && scene->phase_times[next] < t_end;
+        const double t = changes ? scene->phase_times[next] : t_end;
+        const uint64_t before = changes ? simulation_count(sim).steps : 0;
+        const enum advance outcome = sim->model->advance(sim->state, t, budget);
+        if (outcome == ADVANCE_BROKEN) {
+            const struct fault *fault = sim->model->fault ? sim->model->fault(sim->state) : NULL;
+            error_set(error, "%s", fault ? fault->text : "the state stopped being physical");
+        }
+        if (outcome != ADVANCE_REACHED || !changes) return outcome;
+        const uint64_t spent = simulation_count(sim).steps - before;
+        budget = budget > spent ? budget - spent : 0;
+        if (!enter_phase(sim, next, error)) return ADVANCE_BROKEN;
+    }
+}
+
+void simulation_observe(const struct simulation *sim, struct grains *out)
+{
+    sim->model->observe(sim->state, out);
+}
+
+struct counters simulation_count(const struct simulation *sim)
+{
+    struct counters counters = {0};
+    sim->model->count(sim->state, &counters);
+    return counters;
+}
+
+const struct tally *simulation_tally(const struct simulation *sim)
+{
+    return sim->model->tally ? sim->model->tally(sim->state) : NULL;
+}
+
+uint64_t simulation_digest(const struct simulation *sim)
+{
+    struct archive archive;
+    archive_begin_hash(&archive);
+    sim->model->archive(sim->state, &archive);
+    return archive.hash;
+}
+
+bool simulation_save(const struct simulation *sim, struct archive *archive, struct error *error)
+{
+    assert(archive->mode == ARCHIVE_SAVE);
+    uint32_t phase = sim->phase;
+    archive_value(archive, "simulation.phase", &phase);
+    sim->model->archive(sim->state, archive);
+    return !archive->failed || error_set(error, "%s", archive->reason);
+}
+
+bool simulation_load(struct simulation *sim, struct archive *archive, struct error *error)
+{
+    assert(archive->mode == ARCHIVE_LOAD);
+    uint32_t phase = 0;
+    archive_count(archive, "simulation.phase", &phase, sim->scene->phase_count - 1);
+    if (!archive->failed && phase != sim->phase && !enter_phase(sim, phase, error)) return false;
+    if (!archive->failed) sim->model->archive(sim->state, archive);
+    return !archive->failed || error_set(error, "%s", archive->reason);
+}

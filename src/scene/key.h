@@ -1,0 +1,54 @@
+/* key.h - the table of scene keys: one row gives parsing, the default, the limits, `help KEY`,
+ * and the resolved scene that a run writes.
+ *
+ * A group (the top level, `box`, an entry of `grains`, `md`, ...) is a C struct and a table of
+ * rows that say where each key lives in it.  Models bring their own group (struct model), so the
+ * parser knows none of them.
+ */
+#ifndef KEY_H
+#define KEY_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum key_type {
+    KEY_REAL,                   /* double */
+    KEY_COUNT,                  /* uint32_t */
+    KEY_WORD64,                 /* uint64_t */
+    KEY_BOOL,                   /* bool */
+    KEY_CHOICE,                 /* int, index into `choices` "a|b|c" */
+    KEY_TEXT,                   /* char[KEY_TEXT_MAX] */
+    KEY_VECTOR,                 /* double[2], written (x, y) or [x, y] */
+    KEY_BOX,                    /* double[4], written [x0, y0, x1, y1] */
+    KEY_RANGE,                  /* double[2], written r (both equal) or [low, high] */
+    KEY_REALS,                  /* struct key_reals, written [a, b, ...] */
+    KEY_POINTS,                 /* struct key_reals with x and y in turn: ((x, y), (x, y), ...) */
+    KEY_TEXTS                   /* struct key_texts, written ["a", "b"] */
+};
+
+enum { KEY_TEXT_MAX = 256 };
+
+struct key_reals { uint32_t count; double *values; };           /* owned by the scene's arena */
+struct key_texts { uint32_t count; char (*texts)[KEY_TEXT_MAX]; };
+
+struct key {
+    const char   *name;
+    enum key_type type;
+    size_t        offset;       /* in the group's struct */
+    const char   *fallback;     /* the default as it would be written; NULL: must be given;
+                                 * "nan" (real) marks "chosen when absent"; "" for empty lists */
+    double        low, high;    /* limits of every number in it, both allowed; NAN: none */
+    const char   *unit;         /* "length", "time", "speed", "1", ... for help */
+    const char   *choices;      /* KEY_CHOICE: the words, joined by '|'; NULL otherwise */
+    const char   *doc;          /* one sentence */
+};
+
+struct key_group {
+    const char       *name;     /* "md"; entries of lists are named by their list, "grains" */
+    const char       *doc;
+    const struct key *keys;
+    uint32_t          count;
+    size_t            size;     /* sizeof the struct */
+};
+
+#endif
