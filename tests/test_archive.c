@@ -2,7 +2,7 @@
 #include "base/archive.h"
 #include "check.h"
 
-struct state { uint32_t count; double x[4], y[4]; };
+struct state { uint32_t count, unused; double x[4], y[4]; };
 
 static void pass(struct archive *archive, struct state *state, bool with_y)
 {
@@ -11,7 +11,7 @@ static void pass(struct archive *archive, struct state *state, bool with_y)
     if (with_y) archive_array(archive, "y", state->y, state->count);
 }
 
-static const struct state sample = {3, {1, 2, 3, 0}, {4, 5, 6, 0}};
+static const struct state sample = {3, 0, {1, 2, 3, 0}, {4, 5, 6, 0}};
 
 static void test_what_was_saved_is_loaded(void **unused)
 {
