@@ -12,8 +12,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static double power10(int exponent) { return exponent < 0 ? 1 / pow(10, -exponent) : pow(10, exponent); }
-
 /* n * 10^exponent with one rounding only. */
 static double decimal(int64_t n, int exponent)
 {
@@ -183,8 +181,8 @@ static void sqrt_ticks(struct ticks *ticks, const struct request *request, uint3
     multiples(s, low, request->range[1], &first, &last);
     for (int64_t k = last; k >= first; k--) insert(ticks, request, k * s.mantissa, s.exponent, gap);
     for (int finer = 0; finer < 7; finer++) {
-        const double end = decimal(first * s.mantissa, s.exponent) > low ? first : first + 1;
-        const double below = end * step_value(s);
+        const int64_t end = decimal(first * s.mantissa, s.exponent) > low ? first : first + 1;
+        const double below = (double)end * step_value(s);
         s = step_finer(s);
         multiples(s, low, below, &first, &last);
         for (int64_t k = last; k >= first && ticks->count < wanted; k--) {
