@@ -7,7 +7,6 @@
 #include "draw/splat.h"
 
 #include <math.h>
-#include <string.h>
 
 #define FORCE_INLINE static inline __attribute__((always_inline))
 /* Runs the AVX2 form where the processor has it.  Both give the same bytes: square roots,
@@ -49,8 +48,7 @@ static float bounded(float value, float low, float high)
     return value < low ? low : value > high ? high : value;
 }
 
-/* How far a grain's footprint reaches from its centre. */
-static float splat_reach(float radius)
+float splat_reach(float radius)
 {
     return radius < RADIUS_SQUARE ? 0.8862269f * radius : radius + 0.5f;
 }
@@ -216,18 +214,15 @@ void splat_add(float *sums, uint32_t width, const struct splat_area *area,
     }
 }
 
-void splat_resolve(const float *sums, const uint8_t *ground, uint8_t *rgba, uint32_t count)
+void splat_resolve(const float *sums, uint8_t *rgba, size_t count)
 {
-    for (uint32_t i = 0; i < count; i++, sums += 4, ground += 4, rgba += 4) {
+    for (size_t i = 0; i < count; i++, sums += 4, rgba += 4) {
         const float coverage = sums[3];
-        if (coverage <= 0) {
-            memcpy(rgba, ground, 4);
-            continue;
-        }
+        if (coverage <= 0) continue;
         const float share = coverage > 1 ? 1 / coverage : 1;
         const float rest = coverage > 1 ? 0 : 1 - coverage;
         const pixel sum = *(const pixel *)sums;
-        const pixel below = {ground[0], ground[1], ground[2], ground[3]};
+        const pixel below = {rgba[0], rgba[1], rgba[2], rgba[3]};
         pixel value = sum * (255 * share) + below * rest + 0.5f;
         const pixel most = {value[3], value[3], value[3], value[3]};
         const pixel_bytes over = value > most;

@@ -14,6 +14,7 @@
 #define SPLAT_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* A grain in pixels from the lower left corner of the picture. */
@@ -27,6 +28,9 @@ enum splat_style { SPLAT_RIM = 1, SPLAT_SHADE = 2 };
 /* A rectangle of pixels: x0 <= x < x1, y0 <= y < y1. */
 struct splat_area { uint32_t x0, y0, x1, y1; };
 
+/* How far a grain of this radius reaches from its centre. */
+float splat_reach(float radius);
+
 /* Does the grain touch the area? */
 bool splat_touches(const struct splat *splat, const struct splat_area *area);
 
@@ -36,8 +40,8 @@ bool splat_touches(const struct splat *splat, const struct splat_area *area);
 void splat_add(float *sums, uint32_t width, const struct splat_area *area,
                const struct splat *splats, const uint32_t *index, uint32_t count, unsigned style);
 
-/* Colours of `count` pixels from their sums, over premultiplied ground, into premultiplied
- * pixels. */
-void splat_resolve(const float *sums, const uint8_t *ground, uint8_t *rgba, uint32_t count);
+/* Puts the colours that `count` pixels have by their sums over what `rgba` holds (premultiplied
+ * before and after). */
+void splat_resolve(const float *sums, uint8_t *rgba, size_t count);
 
 #endif
