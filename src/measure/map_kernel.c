@@ -241,9 +241,10 @@ FORCE_INLINE void add_all(const struct map_grid *grid, struct map_part *part,
                           unsigned gather)
 {
     const struct line along = line_x(grid), up = line_y(grid);
-    const double scale = 1 / grid->cell;
+    const double cell = grid->cell;
     for (uint32_t k = from; k < to; k++) {
-        double fx = (grains->x[k] - grid->x0) * scale, fy = (grains->y[k] - grid->y0) * scale;
+        /* Divided, as the sides of the box were: a grain on the border must not fall outside. */
+        double fx = (grains->x[k] - grid->x0) / cell, fy = (grains->y[k] - grid->y0) / cell;
         struct grain grain = {.mass = grains->mass[k], .vx = grains->vx[k], .vy = grains->vy[k]};
         const double r = gather & (MAP_GATHER_AREA | MAP_GATHER_SPIN) ? grains->radius[k] : 0;
         if (gather & MAP_GATHER_SPIN) {
@@ -252,7 +253,7 @@ FORCE_INLINE void add_all(const struct map_grid *grid, struct map_part *part,
         }
         if (gather & MAP_GATHER_RATE) grain.rate = grains->collision_rate[k];
         if ((gather & MAP_GATHER_AREA) && kernel == KERNEL_BOX) {
-            cover(grid, part->cells, fx, fy, r * scale);
+            cover(grid, part->cells, fx, fy, r / cell);
         }
         if (!line_inside(along, &fx) || !line_inside(up, &fy)) continue;
         if (kernel == KERNEL_GAUSS) add_gauss(grid, part, fx, fy, &grain, M_PI * r * r, gather);
