@@ -179,10 +179,13 @@ static const struct canvas_backend backends[] = {
 enum { BACKEND_COUNT = sizeof backends / sizeof *backends };
 
 /* What the libraries read from the environment when they are loaded; what the user set stays.
- * EGL must not pick a graphics card, whose pixels would differ, and should not talk to stderr. */
+ * EGL must not pick a graphics card, whose pixels would differ, and should not talk to stderr.
+ * Mesa's own threads save no processor time on pictures of this kind, and would take it from the
+ * simulation that runs beside. */
 static void environment_prepare(void)
 {
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
+    setenv("LP_NUM_THREADS", "0", 0);
     setenv("EGL_LOG_LEVEL", "fatal", 0);
 }
 

@@ -106,7 +106,7 @@ static struct disc disc_prepare(const struct splat *splat)
         .x = splat->x, .y = splat->y, .reach = edge + 0.5f, .per_radius = 1 / r,
         /* Both fade in as the grain grows, since they need some pixels to be seen. */
         .shade = bounded((r - RADIUS_SQUARE) * 0.5f, 0, 1),
-        .rim = RIM_DARK * bounded((r - 1.5f) * 0.4f, 0, 1),
+        .rim = RIM_DARK * bounded((r - 2.5f) * 0.4f, 0, 1),
         .rim_from = edge - 0.5f - bounded(RIM_SHARE * r, RIM_MIN, RIM_MAX),
     };
 }
