@@ -49,7 +49,7 @@ static struct stats_line flank(const struct heap *heap, uint32_t top, int step, 
     size_t count = 0;
     for (int64_t b = top; b >= 0 && b < heap->bins; b += step) {
         const double h = heap->height[b];
-        if (h < low) break;
+        if (h < low || h <= 0) break;
         if (h > high) continue;
         x[count] = heap->x0 + ((double)b + 0.5) * heap->width;
         y[count++] = h;
