@@ -4,18 +4,18 @@
 #include "run/film.h"
 #include "run/folder.h"
 #include "run/recall.h"
-#include "run/source.h"
+#include "run/footage.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static bool save_picture(struct film *film, const struct source *source, const char *path,
+static bool save_picture(struct film *film, const struct footage *footage, const char *path,
                          struct error *error)
 {
     struct encoder_job job = {0};
     struct image_note notes[ENCODER_NOTES];
-    film_describe(film, source->grains.time, &job);
+    film_describe(film, footage->grains.time, &job);
     for (uint32_t k = 0; k < job.note_count; k++) {
         notes[k] = (struct image_note){job.notes[k].key, job.notes[k].text};
     }
@@ -24,11 +24,11 @@ static bool save_picture(struct film *film, const struct source *source, const c
 }
 
 static bool draw(const struct options *options, const struct setup *setup, const char *path,
-                 struct source *source, struct error *error)
+                 struct footage *footage, struct error *error)
 {
     double t;
     char name[FILE_PATH_MAX];
-    if (!options_real(options, OPTION_time, source_end(source), &t, error)) return false;
+    if (!options_real(options, OPTION_time, footage_end(footage), &t, error)) return false;
     snprintf(name, sizeof name, "%s.png", setup->scene->name);
     const char *output = options->values[OPTION_output];
     if (!output) output = name;
@@ -38,13 +38,13 @@ static bool draw(const struct options *options, const struct setup *setup, const
     recall_range(path, setup->scene, &view);
     view.range_from = RANGE_FRAME;
     const bool done = film_open(&film, setup->scene, setup->model, &view, error)
-        && source_go(source, t, error)
-        && film_draw(&film, &source->grains, source->steps, source->wall, error)
-        && save_picture(&film, source, output, error);
+        && footage_go(footage, t, error)
+        && film_draw(&film, &footage->grains, footage->steps, footage->wall, error)
+        && save_picture(&film, footage, output, error);
     film_close(&film);
     if (!done) return false;
-    if (source->from_dumps && fabs(source->grains.time - t) > 1e-9 * fabs(t)) {
-        fprintf(stderr, "the nearest frame that the run kept is at t = %.6g\n", source->grains.time);
+    if (footage->from_dumps && fabs(footage->grains.time - t) > 1e-9 * fabs(t)) {
+        fprintf(stderr, "the nearest frame that the run kept is at t = %.6g\n", footage->grains.time);
     }
     printf("%s\n", output);
     return true;
@@ -54,7 +54,7 @@ int cli_frame(const struct options *options)
 {
     struct error error = {0};
     struct setup setup = {0};
-    struct source source = {0};
+    struct footage footage = {0};
     struct progress progress;
     const char *path = options->operands[0];
     char dump[FILE_PATH_MAX];
@@ -62,16 +62,16 @@ int cli_frame(const struct options *options)
     bool done = opening_threads(options, &error) > 0
         && progress_begin(&progress, options->values[OPTION_progress], &error)
         && opening_load(&setup, options, path, NULL, !redraws, &error)
-        && source_open(&source, &setup, path, film_needs_contacts(&setup.scene->view), &error);
+        && footage_open(&footage, &setup, path, film_needs_contacts(&setup.scene->view), &error);
     if (done) {
         opening_catch_signals();
-        source.report = opening_report;
-        source.context = &progress;
-        source.signal = &opening_signal;
-        done = draw(options, &setup, path, &source, &error);
+        footage.report = opening_report;
+        footage.context = &progress;
+        footage.signal = &opening_signal;
+        done = draw(options, &setup, path, &footage, &error);
         progress_end(&progress);
     }
-    source_close(&source);
+    footage_close(&footage);
     setup_free(&setup);
     return done ? EXIT_DONE : opening_fail(&error);
 }

@@ -3,7 +3,7 @@
 #include "cli/opening.h"
 #include "run/folder.h"
 #include "run/mapper.h"
-#include "run/source.h"
+#include "run/footage.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,17 +12,17 @@
 static const uint32_t samples_default = 100;    /* of a mean over a scene that says no interval */
 
 /* Adds every look between the two times: all frames that a run kept, or so many of a scene. */
-static bool add_mean(struct mapper *mapper, struct source *source, const double span[2],
+static bool add_mean(struct mapper *mapper, struct footage *footage, const double span[2],
                      struct error *error)
 {
-    const struct output *output = &source->setup->scene->output;
-    if (source->from_dumps) {
+    const struct output *output = &footage->setup->scene->output;
+    if (footage->from_dumps) {
         uint32_t added = 0;
-        for (uint32_t k = 0; k < source->dumps.index.count; k++) {
-            const double t = source->dumps.index.entries[k].time;
+        for (uint32_t k = 0; k < footage->dumps.index.count; k++) {
+            const double t = footage->dumps.index.entries[k].time;
             if (t < span[0] || t > span[1]) continue;
-            if (!source_go(source, t, error)) return false;
-            mapper_add(mapper, &source->grains);
+            if (!footage_go(footage, t, error)) return false;
+            mapper_add(mapper, &footage->grains);
             added++;
         }
         return added > 0 || error_set_code(error, EXIT_USAGE,
@@ -32,13 +32,13 @@ static bool add_mean(struct mapper *mapper, struct source *source, const double 
     if (!(interval > 0)) interval = (span[1] - span[0]) / samples_default;
     const double count = floor((span[1] - span[0]) / interval + 1e-9);
     for (uint32_t k = 0; k <= count; k++) {
-        if (!source_go(source, span[0] + k * interval, error)) return false;
-        mapper_add(mapper, &source->grains);
+        if (!footage_go(footage, span[0] + k * interval, error)) return false;
+        mapper_add(mapper, &footage->grains);
     }
     return true;
 }
 
-static bool make(const struct options *options, struct mapper *mapper, struct source *source,
+static bool make(const struct options *options, struct mapper *mapper, struct footage *footage,
                  const char *directory, struct error *error)
 {
     char suffix[64];
@@ -51,12 +51,12 @@ static bool make(const struct options *options, struct mapper *mapper, struct so
                                   options->values[OPTION_average]);
         }
         snprintf(suffix, sizeof suffix, "mean_%g_%g", span[0], span[1]);
-        if (!add_mean(mapper, source, span, error)) return false;
+        if (!add_mean(mapper, footage, span, error)) return false;
     } else {
-        if (!options_real(options, OPTION_time, source_end(source), &t, error)) return false;
-        if (!source_go(source, t, error)) return false;
-        mapper_add(mapper, &source->grains);
-        snprintf(suffix, sizeof suffix, "t_%.6g", source->grains.time);
+        if (!options_real(options, OPTION_time, footage_end(footage), &t, error)) return false;
+        if (!footage_go(footage, t, error)) return false;
+        mapper_add(mapper, &footage->grains);
+        snprintf(suffix, sizeof suffix, "t_%.6g", footage->grains.time);
     }
     if (!file_make_directory(directory, error)) return false;
     return mapper_write(mapper, directory, suffix, error);
@@ -66,7 +66,7 @@ int cli_map(const struct options *options)
 {
     struct error error = {0};
     struct setup setup = {0};
-    struct source source = {0};
+    struct footage footage = {0};
     struct mapper mapper = {0};
     struct progress progress;
     unsigned formats = 0;
@@ -80,20 +80,20 @@ int cli_map(const struct options *options)
         && opening_load(&setup, options, path, NULL, !redraws, &error)
         && mapper_open(&mapper, setup.scene, &setup.scene->view, &setup.scene->measure, formats,
                        &error)
-        && source_open(&source, &setup, path, false, &error);
+        && footage_open(&footage, &setup, path, false, &error);
     if (done) {
         const char *output = options->values[OPTION_output];
         if (output) snprintf(directory, sizeof directory, "%s", output);
         else snprintf(directory, sizeof directory, "%s-maps", setup.scene->name);
         opening_catch_signals();
-        source.report = opening_report;
-        source.context = &progress;
-        source.signal = &opening_signal;
-        done = make(options, &mapper, &source, directory, &error);
+        footage.report = opening_report;
+        footage.context = &progress;
+        footage.signal = &opening_signal;
+        done = make(options, &mapper, &footage, directory, &error);
         progress_end(&progress);
         if (done) printf("%s\n", directory);
     }
-    source_close(&source);
+    footage_close(&footage);
     mapper_close(&mapper);
     setup_free(&setup);
     return done ? EXIT_DONE : opening_fail(&error);

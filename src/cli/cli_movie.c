@@ -58,7 +58,7 @@ static bool open_panel(struct cast *cast, uint32_t p, const struct options *opti
                  redraws ? "" : "   computed in {wall} s");
     }
     panel->setup = setup;
-    return source_open(&panel->source, setup, path, film_needs_contacts(&view), error)
+    return footage_open(&panel->footage, setup, path, film_needs_contacts(&view), error)
         && film_open(&panel->film, setup->scene, setup->model, &view, error);
 }
 
@@ -66,10 +66,10 @@ static bool open_panel(struct cast *cast, uint32_t p, const struct options *opti
 static double find_interval(const struct cast *cast)
 {
     const struct panel *first = &cast->panels[0];
-    const double end = source_end(&first->source);
-    const struct dump_index *index = &first->source.dumps.index;
+    const double end = footage_end(&first->footage);
+    const struct dump_index *index = &first->footage.dumps.index;
     const double wanted = first->setup->scene->output.frames;
-    if (first->source.from_dumps && !(wanted > 0)) {
+    if (first->footage.from_dumps && !(wanted > 0)) {
         return index->count > 1 ? end / (index->count - 1) : 1;
     }
     if (wanted > 0) return wanted;
@@ -85,10 +85,10 @@ static bool film(struct cast *cast, const struct options *options, struct error 
     if (!output) output = name;
     if (!progress_begin(&progress, options->values[OPTION_progress], error)) return false;
     for (uint32_t p = 0; p < cast->count; p++) {
-        struct source *source = &cast->panels[p].source;
-        source->report = opening_report;
-        source->context = &progress;
-        source->signal = &opening_signal;
+        struct footage *footage = &cast->panels[p].footage;
+        footage->report = opening_report;
+        footage->context = &progress;
+        footage->signal = &opening_signal;
     }
     const struct panel_request request = {
         .panels = cast->panels, .count = cast->count, .path = output,
@@ -121,7 +121,7 @@ int cli_movie(const struct options *options)
     }
     done = done && film(cast, options, &error);
     for (uint32_t p = 0; p < cast->count; p++) {
-        source_close(&cast->panels[p].source);
+        footage_close(&cast->panels[p].footage);
         film_close(&cast->panels[p].film);
         setup_free(&cast->setups[p]);
     }

@@ -5,9 +5,10 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-static const double full_colour = 0.99;          /* the share of values below the last colour */
+static const double full_colour = 0.99;         /* the share of values below the last colour */
 
 bool film_needs_contacts(const struct view *view)
 {
@@ -76,10 +77,12 @@ static bool make_field(struct film *film, const struct grains *grains, struct fi
 
 bool film_gather(struct film *film, const struct grains *grains, struct error *error)
 {
-    if (colours_by_value(&film->view)) {
-        for (uint32_t i = 0; i < grains->count; i++) {
-            quantile_add(&film->values, painter_value(&film->view, grains, i));
-        }
+    if (colours_by_value(&film->view) && grains->count > 0) {
+        float *values = malloc(grains->count * sizeof *values);
+        if (!values) return error_set(error, "not enough memory to find the range of the colours");
+        painter_value_all(&film->view, grains, values);
+        for (uint32_t i = 0; i < grains->count; i++) quantile_add(&film->values, (double)values[i]);
+        free(values);
     }
     if (!film->map) return true;
     struct field field;
@@ -94,10 +97,15 @@ bool film_gather(struct film *film, const struct grains *grains, struct error *e
     return true;
 }
 
-/* From 0 to the 99th percentile; symmetric about 0 for signed values. */
-static void settle(const struct quantile *values, double range[2])
+/* From 0 to the 99th percentile; symmetric about 0 for signed values; of radii all of them. */
+static void settle(const struct quantile *values, bool radii, double range[2])
 {
     if (!is_open(range) || values->count == 0) return;
+    if (radii && values->high > values->low) {
+        range[0] = values->low;
+        range[1] = values->high;
+        return;
+    }
     const double low = quantile_at(values, 1 - full_colour);
     double high = quantile_at(values, full_colour);
     if (low < 0) high = fmax(-low, high);
@@ -109,8 +117,8 @@ static void settle(const struct quantile *values, double range[2])
 
 void film_settle(struct film *film)
 {
-    settle(&film->values, film->range);
-    if (film->map) settle(&film->field_values, film->field_range);
+    settle(&film->values, film->view.color == COLOR_RADIUS, film->range);
+    if (film->map) settle(&film->field_values, false, film->field_range);
 }
 
 static void set_variable(struct film *film, uint32_t index, const char *name, const char *format,

@@ -13,7 +13,7 @@ static double end_of(const struct panel_request *request)
 {
     double end = 0;
     for (uint32_t p = 0; p < request->count; p++) {
-        end = fmax(end, source_end(&request->panels[p].source));
+        end = fmax(end, footage_end(&request->panels[p].footage));
     }
     return end;
 }
@@ -39,14 +39,14 @@ static bool record(const struct panel_request *request, uint32_t p, uint32_t fra
     struct panel *panel = &request->panels[p];
     char path[FILE_PATH_MAX];
     record_path(request, p, path);
-    if (!panel->source.from_dumps && !dumps_begin(&panel->record, path, 0, error)) return false;
+    if (!panel->footage.from_dumps && !dumps_begin(&panel->record, path, 0, error)) return false;
     for (uint32_t k = 0; k < frames; k++) {
-        const double t = fmin(k * request->interval, source_end(&panel->source));
-        if (stopped(request, error) || !source_go(&panel->source, t, error)) return false;
-        if (!film_gather(&panel->film, &panel->source.grains, error)) return false;
-        panel->walls[k] = panel->source.wall;
-        if (!panel->source.from_dumps
-            && !dumps_add(&panel->record, &panel->source.grains, panel->source.steps, error)) {
+        const double t = fmin(k * request->interval, footage_end(&panel->footage));
+        if (stopped(request, error) || !footage_go(&panel->footage, t, error)) return false;
+        if (!film_gather(&panel->film, &panel->footage.grains, error)) return false;
+        panel->walls[k] = panel->footage.wall;
+        if (!panel->footage.from_dumps
+            && !dumps_add(&panel->record, &panel->footage.grains, panel->footage.steps, error)) {
             return false;
         }
     }
@@ -80,13 +80,13 @@ static void settle(const struct panel_request *request)
 static bool draw_panel(const struct panel_request *request, struct panel *panel, uint32_t k,
                        bool recorded, struct error *error)
 {
-    const double t = fmin(k * request->interval, source_end(&panel->source));
-    if (!recorded || panel->source.from_dumps) {
-        if (!source_go(&panel->source, t, error)) return false;
-        return film_draw(&panel->film, &panel->source.grains, panel->source.steps,
-                         panel->source.wall, error);
+    const double t = fmin(k * request->interval, footage_end(&panel->footage));
+    if (!recorded || panel->footage.from_dumps) {
+        if (!footage_go(&panel->footage, t, error)) return false;
+        return film_draw(&panel->film, &panel->footage.grains, panel->footage.steps,
+                         panel->footage.wall, error);
     }
-    struct grains *grains = &panel->source.grains;
+    struct grains *grains = &panel->footage.grains;
     return dumps_load(&panel->record, k, grains, error)
         && film_draw(&panel->film, grains, panel->record.index.entries[k].steps, panel->walls[k],
                      error);

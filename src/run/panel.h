@@ -9,13 +9,13 @@
 
 #include "run/film.h"
 #include "run/movie.h"
-#include "run/source.h"
+#include "run/footage.h"
 
 enum { PANEL_MAX = 8 };
 
 struct panel {
     const struct setup *setup;
-    struct source source;
+    struct footage footage;
     struct film   film;
     struct dumps  record;       /* what was seen, when colours need the whole film first */
     double       *walls;        /* seconds spent until each frame */

@@ -44,9 +44,8 @@ uint64_t run_scene_hash(const char *text)
 {
     uint64_t hash = ARCHIVE_HASH_START;
     while (*text) {
-        const size_t length = strcspn(text, "\n");
-        const bool counts = *text != '#' && strncmp(text, "//", 2) != 0
-                         && strncmp(text, "until ", 6) != 0 && strncmp(text, "name ", 5) != 0;
+        const size_t length = strcspn(text, "\n"), indent = strspn(text, " ");
+        const bool counts = text[indent] != '#' && strncmp(text, "until ", 6) != 0;
         if (counts) hash = archive_hash(hash, text, length);
         text += length + (text[length] == '\n');
     }

@@ -48,9 +48,7 @@ static void resolve(struct setup *setup)
     if (setup->findings->errors || !setup->model->resolve) return;
     setup->model->resolve(scene, setup->findings);
     for (uint32_t p = 1; p < scene->phase_count; p++) {
-        /* Phases are scenes of their own; nobody but this scene owns them, and nobody reads
-         * them before they are resolved. */
-        setup->model->resolve((struct scene *)(uintptr_t)scene->phases[p], setup->findings);
+        setup->model->resolve(scene->phases[p], setup->findings);
     }
 }
 
@@ -62,7 +60,7 @@ bool setup_load(struct setup *setup, const struct setup_request *request, struct
     const struct key_group *groups[MODEL_MAX];
     char inside[FILE_PATH_MAX];
     struct scene_request wanted = {
-        .path = request->path, .overrides = request->overrides,
+        .path = request->path, .text = request->text, .overrides = request->overrides,
         .override_count = request->override_count, .groups = groups,
         .group_count = model_settings(groups), .place = request->place,
     };

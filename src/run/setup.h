@@ -17,6 +17,7 @@ struct setup {
 
 struct setup_request {
     const char *path;           /* a scene file, a built-in scene, or a run directory */
+    const char *text;           /* or the scene itself (path is then only its name); NULL */
     const char *const *overrides;
     uint32_t override_count;
     bool place;                 /* place the grains: needed to simulate, not to draw dumps */
