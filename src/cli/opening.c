@@ -18,7 +18,7 @@ static void note_signal(int number)
 void opening_catch_signals(void)
 {
     /* SA_RESETHAND: a second Ctrl-C ends a program that takes too long to stop. */
-    struct sigaction action = {.sa_handler = note_signal, .sa_flags = SA_RESETHAND};
+    struct sigaction action = {.sa_handler = note_signal, .sa_flags = (int)SA_RESETHAND};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
 }

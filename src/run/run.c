@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "run/checkpoint.h"
 #include "run/folder.h"
+#include "run/look.h"
 #include "run/manifest.h"
 #include "run/writer.h"
 
