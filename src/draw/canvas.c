@@ -332,6 +332,9 @@ void canvas_write(struct canvas *canvas, uint32_t row, uint32_t row_count, const
 /* Premultiplied to straight, rounded; opaque and empty pixels are what they are. */
 static void row_straighten(uint8_t *rgba, uint32_t count)
 {
+    uint8_t opaque = 255;
+    for (uint32_t i = 0; i < count; i++) opaque &= rgba[4 * i + 3];
+    if (opaque == 255) return;
     for (uint32_t i = 0; i < count; i++, rgba += 4) {
         const unsigned alpha = rgba[3];
         if (alpha == 255 || alpha == 0) continue;
