@@ -37,7 +37,8 @@ static uint32_t gather_visible(const struct picture *picture, const struct trans
     for (uint32_t i = 0; i < grains->count; i++) {
         const double x = transform_x(t, grains->x[i]), y = transform_y(t, grains->y[i]);
         if (!(x >= 0 && y >= 0 && x < width && y < height)) continue;
-        list[count++] = (struct arrow){(float)x, (float)y, (float)grains->vx[i], (float)grains->vy[i]};
+        list[count++] = (struct arrow){(float)x, (float)y, (float)grains->vx[i],
+                                       (float)grains->vy[i]};
     }
     return count;
 }
@@ -51,7 +52,8 @@ static bool average_cells(struct arrows *arrows, const struct picture *picture,
     const double shift_y = fmod(t->y1 * t->scale, size) + size;
     const uint32_t nx = (uint32_t)(picture->view->size[0] / size) + 4;
     const uint32_t ny = (uint32_t)(picture->view->size[1] / size) + 4;
-    struct sum { double x, y, vx, vy; uint32_t count; } *sums = calloc((size_t)nx * ny, sizeof *sums);
+    struct sum { double x, y, vx, vy; uint32_t count; } *sums;
+    sums = calloc((size_t)nx * ny, sizeof *sums);
     if (!sums) return false;
     for (uint32_t k = 0; k < arrows->count; k++) {
         const struct arrow *a = &arrows->list[k];

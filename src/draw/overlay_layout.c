@@ -41,7 +41,8 @@ static double letters(const char *text)
 static void choose_parts(const struct picture *picture, struct layout *layout)
 {
     const struct view *view = picture->view;
-    layout->grains_bar = view->legend && view->grains && picture->grains && view->color != COLOR_NONE;
+    layout->grains_bar = view->legend && view->grains && picture->grains
+        && view->color != COLOR_NONE;
     layout->field_bar = view->legend && picture->field;
     layout->title = view->title[0] != 0;
     layout->label = view->label[0] != 0;
