@@ -33,15 +33,16 @@ FORCE_INLINE int64_t bits_of(double x)
 FORCE_INLINE void move_verlet(struct grain *g, struct half *h, double ax, double ay, double at,
                               double dt, unsigned form)
 {
-    const double half = 0.5 * dt;
-    h->hx += dt * ax;
-    h->hy += dt * ay;
+    const double half = 0.5 * dt, kick = g->fresh ? half : dt;
+    g->fresh = 0;
+    h->hx += kick * ax;
+    h->hy += kick * ay;
     g->ux = h->hx + half * ax;
     g->uy = h->hy + half * ay;
     g->x += dt * h->hx;
     g->y += dt * h->hy;
     if (form & ROTATES) {
-        h->hrim += dt * at;
+        h->hrim += kick * at;
         g->rim = h->hrim + half * at;
         h->angle += dt * h->hrim;
     }
