@@ -240,6 +240,7 @@ static void add_sums(struct md *md)
 bool md_step_take(struct md *md)
 {
     if (md->gears) md->steps_here++;                            /* Gear: forces at the new time */
+    if (md->walls_vary) md_walls_place(md);
     const uint32_t strips = md->strip_count;
 #pragma omp parallel num_threads(md->thread_count) if (strips > 1)
     {
@@ -249,8 +250,6 @@ bool md_step_take(struct md *md)
 #pragma omp for schedule(static)
             for (uint32_t t = 0; t < strips; t++) predict_gear(md, t);
         }
-#pragma omp single
-        if (md->walls_vary) md_walls_place(md);
 #pragma omp for schedule(static)
         for (uint32_t t = 0; t < strips; t++) push_cross(md, t, &w);
 #pragma omp for schedule(static)
