@@ -404,5 +404,9 @@ bool painter_frame(struct painter *painter, const struct picture *picture, struc
     frame_rows(&frame, painter);
     frame_overlays(&frame, painter);
     canvas_read(painter->canvas, image);
-    return true;
+    const GLenum trouble = gl.GetError();
+    return trouble == GL_NO_ERROR
+        || error_set(error, "a picture of %u x %u pixels was not drawn: OpenGL reports %s (%#x)",
+                     painter->width, painter->height, trouble == GL_OUT_OF_MEMORY
+                     ? "that memory ran out" : "an error", trouble);
 }
