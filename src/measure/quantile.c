@@ -64,7 +64,9 @@ void quantile_merge(struct quantile *quantile, const struct quantile *other)
 double quantile_at(const struct quantile *quantile, double p)
 {
     if (quantile->count == 0) return NAN;
-    uint64_t rank = (uint64_t)ceil(fmax(0, fmin(1, p)) * (double)quantile->count);
+    /* p = 0.29 of 100 is the 29th, though 0.29 * 100 rounds to more than 29. */
+    const double share = fmax(0, fmin(1, p)) * (1 - 1e-12);
+    const uint64_t rank = (uint64_t)ceil(share * (double)quantile->count);
     if (rank <= 1) return quantile->low;
     if (rank >= quantile->count) return quantile->high;
     uint64_t seen = 0;

@@ -155,9 +155,9 @@ struct tree *tree_value(struct arena *arena, const char *text, const char *file,
     config_init(&config);
     if (asprintf(&copy, "value = %s;", text) >= 0) {
         brackets_to_parentheses(copy);
-        config_setting_t *root = config_root_setting(&config);
-        if (config_read_string(&config, copy)) root = config_root_setting(&config);
-        if (config_setting_length(root) == 1) {
+        const bool sound = config_read_string(&config, copy);
+        config_setting_t *root = sound ? config_root_setting(&config) : NULL;
+        if (root && config_setting_length(root) == 1) {
             node = node_copy(arena, config_setting_get_elem(root, 0), file, line ? line : -1);
             if (node) node->name[0] = 0;
         }
