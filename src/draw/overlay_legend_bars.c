@@ -122,7 +122,7 @@ static void make_heading(char *out, size_t size, const char *name, const char *u
     ticks_make(&ticks, bar->scale, bar->range, TICKS_MAX);
     if (ticks.exponent != 0) ticks_power(factor, ticks.exponent);
     overlay_label_unit(unit, pretty, sizeof pretty);
-    const char *blank = factor[0] && pretty[0] ? " " : "";
+    const char *blank = factor[0] && pretty[0] ? "\u00a0" : "";  /* no line ends here */
     if (factor[0] || pretty[0]) snprintf(out, size, "%s (%s%s%s)", name, factor, blank, pretty);
     else snprintf(out, size, "%s", name);
 }
