@@ -336,8 +336,8 @@ static void test_an_effect_in_a_later_phase_is_refused_before_the_start(void **u
         EXPECT(scene->phase_count == 2);
         struct scene later = *scene->phases[1];
         later.effects |= EFFECT_SHEAR;
-        const struct scene *phases[2] = {scene, &later};
-        const struct scene **kept = scene->phases;
+        struct scene *phases[2] = {scene, &later};
+        struct scene **kept = scene->phases;
         scene->phases = phases;
         struct simulation sim;
         struct error error = {.text = ""};
