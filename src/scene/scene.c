@@ -336,6 +336,7 @@ static const char *const unit_words[][3] = {
     {"1/area", "1/m^2", "1/cm^2"},      {"1/length", "1/m", "1/cm"},
     {"mass/area", "kg/m^2", "g/cm^2"},  {"pressure", "N/m", "dyn/cm"},
     {"stress", "N/m", "dyn/cm"},        {"speed^2", "m^2/s^2", "cm^2/s^2"},
+    {"1/time^2", "1/s^2", "1/s^2"},     {"angular momentum", "kg m^2/s", "g cm^2/s"},
     {"temperature", "m^2/s^2", "cm^2/s^2"}, {"mass/time", "kg/s", "g/s"},
 };
 
