@@ -57,7 +57,8 @@ char *key_limits(const struct key *key, char *text, size_t size)
         text[used < size ? used : size - 1] = 0;
         return text;
     }
-    const bool low = !isnan(key->low), high = !isnan(key->high);
+    /* Limits that only keep squares from overflowing are nobody's business. */
+    const bool low = fabs(key->low) < 1e30, high = fabs(key->high) < 1e30;
     text[0] = 0;
     if (low && key->low == KEY_POSITIVE) {
         if (high) snprintf(text, size, "greater than 0, at most %.10g", key->high);

@@ -27,6 +27,7 @@ enum { TEXT_SIZE_MAX = 64 << 20, PHASES_MAX = 1000 };
 struct source_text {
     const char *text;
     char *owned;                /* to be freed; NULL if borrowed */
+    char path[KEY_TEXT_MAX];    /* as the user named it; `file` says where it really is */
     char file[KEY_TEXT_MAX], folder[KEY_TEXT_MAX], name[KEY_TEXT_MAX];
 };
 
@@ -64,6 +65,7 @@ static void name_parts(struct source_text *source, const char *path)
     if (end && end != source->name) *end = 0;
     snprintf(source->folder, sizeof source->folder, "%.*s", slash ? (int)(slash - path) : 1,
              slash ? path : ".");
+    snprintf(source->path, sizeof source->path, "%s", path);
     snprintf(source->file, sizeof source->file, "%s", path);
 }
 
@@ -176,7 +178,7 @@ static struct scene *scene_blank(const struct scene_request *request,
     struct scene *scene = calloc(1, sizeof *scene);
     if (!scene) return NULL;
     memcpy(scene->name, source->name, sizeof scene->name);
-    memcpy(scene->path, source->file, sizeof scene->path);
+    memcpy(scene->path, source->path, sizeof scene->path);
     scene->settings_count = request->group_count;
     const struct key_group **groups;
     if (arena_array(&scene->arena, &groups, request->group_count)
