@@ -401,9 +401,10 @@ static void test_arrows_of_many_grains_are_thinned_out(void **unused)
     const struct transform t = {6, 0, 200};
     page.count = 0;
     overlay_arrows(&page, &picture, &t);
-    CHECK(page.count > 300 && page.count < 5000);
-    for (uint32_t k = 0; k < page.count; k++) {     /* a uniform flow stays uniform */
-        CHECK_NEAR(page.marks[k].x1 - page.marks[k].x0, page.marks[0].x1 - page.marks[0].x0, 0.01);
+    CHECK(page.count > 600 && page.count < 5000 && page.count % 2 == 0);
+    const struct mark *arrow = page.marks + page.count / 2;     /* behind the lines beneath them */
+    for (uint32_t k = 0; k < page.count / 2; k++) {             /* a uniform flow stays uniform */
+        CHECK_NEAR(arrow[k].x1 - arrow[k].x0, arrow[0].x1 - arrow[0].x0, 0.01);
     }
     grains_free(&many);
 }

@@ -319,11 +319,11 @@ static bool carry_out(struct run *run, struct run_result *result)
 {
     const struct run_request *request = run->request;
     struct manifest manifest = {run->scene, request->model, "running", run->scene_hash, NULL};
-    if (!manifest_save(&manifest, run->directory, run->error)) return false;
     if (!writer_open(&run->writer, &run->sim, run->directory, request->threads, request->resume,
                      &run->parts, run->error)) {
         return false;
     }
+    if (!manifest_save(&manifest, run->directory, run->error)) return false;
     if (request->resume && !load_checkpoint(run)) return false;
     run->time_start = simulation_count(&run->sim).time;
     run->start = run->rate_mark = run->checkpoint_wall = clock_wall();
