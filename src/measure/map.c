@@ -94,8 +94,8 @@ static bool grid_set(struct map_grid *grid, const struct scene *scene,
     else if (periodic_y) cell = ly / fmax(1, round(ly / cell));
     const double nx = side_cells(lx, cell), ny = side_cells(ly, cell);
     if (nx * ny > cells_max) {
-        return error_set_code(error, EXIT_SCENE, "%s: a map of %.0f x %.0f cells is too large; make "
-            "measure.cell at least %.3g", scene->path, nx, ny, sqrt(lx * ly / cells_max));
+        return error_set_code(error, EXIT_SCENE, "%s: a map of %.0f x %.0f cells is too large; "
+            "make measure.cell at least %.3g", scene->path, nx, ny, sqrt(lx * ly / cells_max));
     }
     const double width = isnan(measure->width) ? 1 : measure->width / cell;
     if (measure->kernel != KERNEL_BOX && !(width > 0 && width <= width_max)) {
