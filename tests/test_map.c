@@ -1,4 +1,4 @@
-/* test_map.c - maps lose nothing, and show density, flow and temperature of gases that are known. */
+/* test_map.c - maps lose nothing; density, flow and temperature of known gases come out right. */
 #include "base/rng.h"
 #include "check.h"
 #include "measure/map.h"

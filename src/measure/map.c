@@ -17,7 +17,7 @@
 enum { PART_MAX = 8 };
 
 static const double parts_bytes_max = 64e6;     /* more memory than this is not worth a thread */
-static const double cells_max = 16777216;       /* 4096 x 4096: 1.7 GB of sums */
+static const double cells_max = 16777216;       /* 4096 x 4096: 2.1 GB of sums */
 static const double width_max = 64;             /* cells; wider kernels cost 1e5 cells a grain */
 static const uint32_t worth_threads = 20000;    /* grains */
 
