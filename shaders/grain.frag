@@ -38,6 +38,6 @@ void main()
     float light = (1.0 + (1.07 - 0.24 * q - 1.0) * shade) * (1.0 - spot);
 
     float rim_from = edge - 0.5 - clamp(0.11 * r, 0.8, 2.5);
-    float rim = style.x * 0.52 * clamp((r - 1.5) * 0.4, 0.0, 1.0) * clamp(d - rim_from, 0.0, 1.0);
+    float rim = style.x * 0.52 * clamp((r - 2.5) * 0.4, 0.0, 1.0) * clamp(d - rim_from, 0.0, 1.0);
     sum = vec4((disc_color * light + spot) * (1.0 - rim) * a, a);
 }

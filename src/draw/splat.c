@@ -7,6 +7,7 @@
 #include "draw/splat.h"
 
 #include <math.h>
+#include <string.h>
 
 #define FORCE_INLINE static inline __attribute__((always_inline))
 /* Runs the AVX2 form where the processor has it.  Both give the same bytes: square roots,
@@ -18,7 +19,9 @@
 #endif
 
 typedef float pixel __attribute__((vector_size(16)));
-typedef int32_t pixel_bytes __attribute__((vector_size(16)));
+typedef int32_t words __attribute__((vector_size(16)));
+typedef uint8_t lanes __attribute__((vector_size(16)));
+typedef uint8_t bytes __attribute__((vector_size(4)));
 
 enum { PIECE = 64 };            /* pixels of a row handled at a time */
 
@@ -106,7 +109,7 @@ static struct disc disc_prepare(const struct splat *splat)
         .x = splat->x, .y = splat->y, .reach = edge + 0.5f, .per_radius = 1 / r,
         /* Both fade in as the grain grows, since they need some pixels to be seen. */
         .shade = bounded((r - RADIUS_SQUARE) * 0.5f, 0, 1),
-        .rim = RIM_DARK * bounded((r - 1.5f) * 0.4f, 0, 1),
+        .rim = RIM_DARK * bounded((r - 2.5f) * 0.4f, 0, 1),
         .rim_from = edge - 0.5f - bounded(RIM_SHARE * r, RIM_MIN, RIM_MAX),
     };
 }
@@ -214,20 +217,28 @@ void splat_add(float *sums, uint32_t width, const struct splat_area *area,
     }
 }
 
-void splat_resolve(const float *sums, uint8_t *rgba, size_t count)
+DISPATCH void splat_resolve(const float *sums, uint8_t *rgba, size_t count)
 {
     for (size_t i = 0; i < count; i++, sums += 4, rgba += 4) {
         const float coverage = sums[3];
         if (coverage <= 0) continue;
-        const float share = coverage > 1 ? 1 / coverage : 1;
-        const float rest = coverage > 1 ? 0 : 1 - coverage;
-        const pixel sum = *(const pixel *)sums;
-        const pixel below = {rgba[0], rgba[1], rgba[2], rgba[3]};
-        pixel value = sum * (255 * share) + below * rest + 0.5f;
+        pixel value = *(const pixel *)sums * 255;
+        if (coverage < 1) {
+            bytes below;
+            memcpy(&below, rgba, 4);
+            value += __builtin_convertvector(below, pixel) * (1 - coverage);
+        } else if (coverage > 1) {
+            value *= 1 / coverage;
+        }
+        value += 0.5f;
+        /* Lights may shine beyond white; premultiplied colours end at their alpha. */
         const pixel most = {value[3], value[3], value[3], value[3]};
-        const pixel_bytes over = value > most;
-        value = (pixel)(((pixel_bytes)value & ~over) | ((pixel_bytes)most & over));
-        const pixel_bytes bytes = __builtin_convertvector(value, pixel_bytes);
-        for (int k = 0; k < 4; k++) rgba[k] = (uint8_t)bytes[k];
+        const words over = value > most;
+        value = (pixel)(((words)value & ~over) | ((words)most & over));
+        /* The lowest byte of each word; a conversion of vectors would go through four registers. */
+        const lanes whole = (lanes)__builtin_convertvector(value, words);
+        const lanes color = __builtin_shufflevector(whole, whole, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4,
+                                                    8, 12, 0, 4, 8, 12);
+        memcpy(rgba, &color, 4);
     }
 }

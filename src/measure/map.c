@@ -187,6 +187,19 @@ void map_add(struct map *map, const struct grains *grains)
     }
 }
 
+void map_archive(struct map *map, struct archive *archive)
+{
+    const size_t cells = (size_t)map->grid.nx * map->grid.ny;
+    archive_value(archive, "map.snapshots", &map->snapshots);
+    archive_value(archive, "map.from", &map->from);
+    archive_value(archive, "map.to", &map->to);
+    for (uint32_t p = 0; p < map->part_count; p++) {
+        char name[32];
+        snprintf(name, sizeof name, "map.part.%u", p);
+        archive_array(archive, name, map->parts[p].cells, cells);
+    }
+}
+
 /* A cell with the parts put together: means, and sums of squares about the means. */
 struct total {
     double count, mass, vx, vy, energy, inertia, spin, angular_energy, rate, area;

@@ -80,11 +80,12 @@ static bool read_text(struct source_text *source, const struct scene_request *re
     source->text = request->text;
     if (source->text) return true;
     if (names_builtin(path)) {
-        char name[KEY_TEXT_MAX + 16];
-        snprintf(name, sizeof name, "scenes/%s.cfg", path);
+        char name[KEY_TEXT_MAX];
+        snprintf(name, sizeof name, "scenes/%.200s.cfg", path);
         const struct asset *asset = asset_find(name);
         if (asset) {
             source->text = (const char *)asset->bytes;
+            memcpy(source->file, name, strlen(name) + 1);
             return true;
         }
         if (!file_exists(path)) {

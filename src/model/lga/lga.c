@@ -25,9 +25,9 @@ enum { SITES_MAX = 1 << 26 };           /* 40 bytes a site: 2.7 GB */
 static const struct key keys[] = {
     {"method", KEY_CHOICE, ROW(method), "gmlg", NAN, NAN, NULL, "gmlg",
      "rules: gmlg, a gas with gravity and up to seven rest grains a node"},
-    {"spacing", KEY_REAL, ROW(spacing), "nan", 0, NAN, "length", NULL,
+    {"spacing", KEY_REAL, ROW(spacing), "nan", KEY_POSITIVE, NAN, "length", NULL,
      "distance of nodes; when absent sqrt(7) mean diameters, so that seven grains fill a node"},
-    {"tick", KEY_REAL, ROW(tick), "nan", 0, NAN, "time", NULL,
+    {"tick", KEY_REAL, ROW(tick), "nan", KEY_POSITIVE, NAN, "time", NULL,
      "duration of a tick, in which a mover goes one spacing; when absent sqrt(spacing / gravity), "
      "without gravity spacing / speed of the grains at the start"},
     {"k", KEY_REAL, ROW(k), "nan", 0, 1, "1", NULL,
@@ -85,7 +85,11 @@ static struct lga_settings completed(const struct scene *scene)
     if (given) s = *given;
     if (!isfinite(s.spacing)) s.spacing = SQRT7 * 2 * scene->radius_mean;
     if (!isfinite(s.tick)) {
-        const double gravity = hypot(scene->gravity[0], scene->gravity[1]);
+        double gravity = 0;             /* the strongest of all phases, so that they tick alike */
+        for (uint32_t p = 0; p < scene->phase_count; p++) {
+            const double *g = scene->phases[p]->gravity;
+            gravity = fmax(gravity, hypot(g[0], g[1]));
+        }
         s.tick = gravity > 0 ? sqrt(s.spacing / gravity) : s.spacing / speed_at_start(scene);
     }
     if (!isfinite(s.k)) s.k = inelastic_share(scene);
@@ -100,21 +104,25 @@ static double sites_about(const struct scene *scene, double spacing)
     return (width / spacing + 5) * (height / spacing + 5) * 2 / sqrt(3);
 }
 
+/* Fills in spacing and tick, the same ones for all phases.  k and pw stay open: they follow from
+ * each phase's own restitution. */
+static void fill_settings(const struct scene *scene, const struct lga_settings *s)
+{
+    for (uint32_t p = 0; p < scene->phase_count; p++) {
+        struct lga_settings *given = scene_settings(scene->phases[p], "lga");
+        if (given && isnan(given->spacing)) given->spacing = s->spacing;
+        if (given && isnan(given->tick)) given->tick = s->tick;
+    }
+}
+
 static void lga_resolve(struct scene *scene, struct findings *findings)
 {
-    struct lga_settings s = completed(scene), *given = scene_settings(scene, "lga");
-    if (given) *given = s;
-    if (!(s.spacing > 0)) {
-        findings_tell(findings, scene, FINDING_ERROR, "lga.spacing",
-                      "lga.spacing must be above 0; delete the line and sandreel chooses");
-    } else if (!(sites_about(scene, s.spacing) <= SITES_MAX)) {
+    const struct lga_settings s = completed(scene);
+    fill_settings(scene, &s);
+    if (!(sites_about(scene, s.spacing) <= SITES_MAX)) {
         findings_tell(findings, scene, FINDING_ERROR, "lga.spacing", "lga.spacing = %g gives about "
             "%.3g nodes, more than %d; use a larger spacing or a smaller box", s.spacing,
             sites_about(scene, s.spacing), SITES_MAX);
-    }
-    if (!(s.tick > 0)) {
-        findings_tell(findings, scene, FINDING_ERROR, "lga.tick",
-                      "lga.tick must be above 0; delete the line and sandreel chooses");
     }
     const double gx = scene->gravity[0], gy = scene->gravity[1];
     if (gx != 0 || gy > 0) {

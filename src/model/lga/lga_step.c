@@ -16,7 +16,7 @@
 #include <assert.h>
 #include <math.h>
 
-enum { LOOP_SITES_MIN = 8192 };         /* below this a second thread costs more than it brings */
+enum { LOOP_SITES_MIN = 1 << 16 };      /* below this a second thread costs more than it brings */
 
 /* The random numbers of a node in a tick; those of one direction follow each other. */
 enum draw {
