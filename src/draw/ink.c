@@ -9,7 +9,7 @@
  *     ARC         along and across its middle  radius, half width, cos and sin of half its angle
  *     ARROW       from its tail, across        length, half width; head: length, half width
  *     TRIANGLE    distances inside each side   -
- *     GLYPH       place in the atlas           exponent of the coverage
+ *     GLYPH       place in the atlas           gain of the edges
  *
  * Lines, discs, rectangles and plates are all rounded boxes.  Colours are blended as they are
  * (not in linear light), so that an edge has the grey that its coverage says; the framebuffer
@@ -236,12 +236,11 @@ double ink_text_width(struct ink *ink, double size, const char *text)
     return width;
 }
 
-/* Light letters on a dark ground look thinner than dark ones on a light ground; a coverage raised
- * to a power below one makes up for it. */
-static double coverage_exponent(struct ink_color color)
+/* Light letters on a dark ground look thinner than dark ones on a light ground, so the grey of
+ * their edges is raised by this much of itself times what it lacks of full. */
+static double edge_gain(struct ink_color color)
 {
-    const double lightness = (0.299 * color.r + 0.587 * color.g + 0.114 * color.b) / 255;
-    return 1.0 - 0.25 * lightness;
+    return 0.38 * (0.299 * color.r + 0.587 * color.g + 0.114 * color.b) / 255;
 }
 
 static void add_glyph(struct ink *ink, const struct ink_glyph *glyph, double x, double y,
@@ -254,7 +253,7 @@ static void add_glyph(struct ink *ink, const struct ink_glyph *glyph, double x, 
         vertex[corner] = (struct vertex){
             .position = {(float)x + u, (float)y + v},
             .local = {(float)glyph->x + u, (float)glyph->y + v},
-            .shape = {(float)coverage_exponent(color)},
+            .shape = {(float)edge_gain(color)},
             .color = {color.r, color.g, color.b, color.a},
             .kind = KIND_GLYPH,
         };

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include <ft2build.h>
+#include FT_ADVANCES_H
 #include FT_FREETYPE_H
 #include FT_OUTLINE_H
 
@@ -113,7 +114,10 @@ static bool load(struct ink_font *font, uint32_t code, double size)
 
 double ink_font_advance(struct ink_font *font, uint32_t code, double size)
 {
-    return load(font, code, size) ? (double)font->face->glyph->linearHoriAdvance / 65536 : 0;
+    FT_Fixed advance;
+    const FT_UInt index = FT_Get_Char_Index(font->face, code);
+    if (FT_Get_Advance(font->face, index, FT_LOAD_NO_SCALE, &advance) != 0) return 0;
+    return size * (double)advance / font->face->units_per_EM;
 }
 
 /* Room for width x height pixels with an empty border; false if the atlas is full. */

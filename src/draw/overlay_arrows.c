@@ -135,20 +135,33 @@ bool overlay_arrows_key(const struct picture *picture, const struct transform *t
     return found;
 }
 
+/* All arrows in one colour, or the lines beneath them; those too short to point anywhere are left
+ * out, and those that are mostly head need no line. */
+static void draw_all(struct ink *ink, const struct arrows *arrows, double pixels_per_speed,
+                     double width, bool halo, struct ink_color color)
+{
+    for (uint32_t k = 0; k < arrows->count; k++) {
+        const struct arrow *a = &arrows->list[k];
+        const double x = (double)a->x, dx = (double)a->vx * pixels_per_speed;
+        const double y = (double)a->y, dy = -(double)a->vy * pixels_per_speed;
+        if (!(hypot(dx, dy) > (halo ? 6 * width : length_min))) continue;
+        if (halo) ink_line(ink, x, y, x + dx, y + dy, 2.2 * width, color);
+        else ink_arrow(ink, x, y, x + dx, y + dy, width, color);
+    }
+}
+
+/* Under every arrow lies a paler line, so that a dark one shows on dark grains too. */
 void overlay_arrows(struct ink *ink, const struct picture *picture, const struct transform *t)
 {
+    const bool dark = picture->view->theme == THEME_DARK;
+    const uint8_t arrow_grey = dark ? 250 : 12, halo_grey = dark ? 0 : 255;
     struct arrows arrows;
     double speed, length, width;
-    const struct ink_color color = picture->view->theme == THEME_DARK
-        ? (struct ink_color){250, 250, 252, 255} : (struct ink_color){12, 12, 18, 255};
     if (gather(picture, t, &arrows) && measure(picture, t, &arrows, &speed, &length, &width)) {
-        for (uint32_t k = 0; k < arrows.count; k++) {
-            const struct arrow *a = &arrows.list[k];
-            const double dx = (double)a->vx * length / speed, dy = -(double)a->vy * length / speed;
-            if (!(hypot(dx, dy) > length_min)) continue;
-            const double x = (double)a->x, y = (double)a->y;
-            ink_arrow(ink, x, y, x + dx, y + dy, width, color);
-        }
+        draw_all(ink, &arrows, length / speed, width, true,
+                 (struct ink_color){halo_grey, halo_grey, halo_grey, 110});
+        draw_all(ink, &arrows, length / speed, width, false,
+                 (struct ink_color){arrow_grey, arrow_grey, arrow_grey, 255});
     }
     free(arrows.list);
 }

@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* Sizes in letters of the layout's size. */
-static const double tick_size = 0.88, heading_size = 0.92, line_spacing = 1.25;
+static const double tick_size = 0.88, heading_size = 0.88, line_spacing = 1.25;
 static const double bar_length_max = 26;
 
 enum { HEADING_LINES = 4, LINE_MAX = 120, HEADING_MAX = 200, UNIT_MAX = 40 };

@@ -20,6 +20,7 @@
 
 typedef float pixel __attribute__((vector_size(16)));
 typedef int32_t words __attribute__((vector_size(16)));
+typedef uint8_t lanes __attribute__((vector_size(16)));
 typedef uint8_t bytes __attribute__((vector_size(4)));
 
 enum { PIECE = 64 };            /* pixels of a row handled at a time */
@@ -221,18 +222,23 @@ DISPATCH void splat_resolve(const float *sums, uint8_t *rgba, size_t count)
     for (size_t i = 0; i < count; i++, sums += 4, rgba += 4) {
         const float coverage = sums[3];
         if (coverage <= 0) continue;
-        const float share = coverage > 1 ? 255 / coverage : 255;
-        const float rest = coverage > 1 ? 0 : 1 - coverage;
-        bytes below;
-        memcpy(&below, rgba, 4);
-        pixel value = *(const pixel *)sums * share
-            + __builtin_convertvector(below, pixel) * rest + 0.5f;
+        pixel value = *(const pixel *)sums * 255;
+        if (coverage < 1) {
+            bytes below;
+            memcpy(&below, rgba, 4);
+            value += __builtin_convertvector(below, pixel) * (1 - coverage);
+        } else if (coverage > 1) {
+            value *= 1 / coverage;
+        }
+        value += 0.5f;
         /* Lights may shine beyond white; premultiplied colours end at their alpha. */
         const pixel most = {value[3], value[3], value[3], value[3]};
         const words over = value > most;
         value = (pixel)(((words)value & ~over) | ((words)most & over));
-        const words whole = __builtin_convertvector(value, words);
-        const bytes color = __builtin_convertvector(whole, bytes);
+        /* The lowest byte of each word; a conversion of vectors would go through four registers. */
+        const lanes whole = (lanes)__builtin_convertvector(value, words);
+        const lanes color = __builtin_shufflevector(whole, whole, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4,
+                                                    8, 12, 0, 4, 8, 12);
         memcpy(rgba, &color, 4);
     }
 }

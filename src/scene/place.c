@@ -319,7 +319,7 @@ static uint32_t sides_of(const struct region *region, struct wall *sides)
 }
 
 /* What a random placement works on: the new discs, then those that are there already. */
-struct heap { uint32_t count, all; double *x, *y, *radius; };
+struct heap { uint32_t count, all; double *x, *y, *radius; double fraction; };
 
 static bool heap_take(const struct placer *placer, struct heap *heap)
 {
@@ -337,13 +337,25 @@ static bool heap_take(const struct placer *placer, struct heap *heap)
     return true;
 }
 
+struct guess { double x, y, band; };
+
+/* By bands of two diameters, from left to right: neighbours in space are near in memory. */
+static int guess_compare(const void *a, const void *b)
+{
+    const struct guess *p = a, *q = b;
+    if (p->band != q->band) return p->band < q->band ? -1 : 1;
+    return (p->x > q->x) - (p->x < q->x);
+}
+
 /* A random point of the region from which a disc is easily moved to where it fits: inside, and
  * outside of solid discs.  Bounded tries; the last point may lie in a disc. */
-static void first_guess(const struct placer *placer, const struct region *region, uint32_t number,
+static bool first_guess(const struct placer *placer, const struct region *region, uint32_t number,
                         struct heap *heap)
 {
     struct rng rng = rng_stream(placer->scene->seed, STREAM_POSITION, number);
     const double *b = region->bounds;
+    struct guess *guesses = calloc(heap->count, sizeof *guesses);
+    if (!guesses) return false;
     for (uint32_t k = 0; k < heap->count; k++) {
         double x = 0, y = 0;
         for (uint32_t tries = 0; tries < 2000; tries++) {
@@ -352,9 +364,15 @@ static void first_guess(const struct placer *placer, const struct region *region
             const bool inside = region_holds(region, x, y, 0);
             if (inside && (tries > 1000 || !meets_wall(placer, x, y, 0))) break;
         }
-        heap->x[k] = x;
-        heap->y[k] = y;
+        guesses[k] = (struct guess){x, y, floor((y - b[1]) / (4 * heap->radius[0]))};
     }
+    qsort(guesses, heap->count, sizeof *guesses, guess_compare);
+    for (uint32_t k = 0; k < heap->count; k++) {
+        heap->x[k] = guesses[k].x;
+        heap->y[k] = guesses[k].y;
+    }
+    free(guesses);
+    return true;
 }
 
 static enum pack_outcome heap_pack(const struct placer *placer, const struct region *region,
@@ -364,7 +382,7 @@ static enum pack_outcome heap_pack(const struct placer *placer, const struct reg
     struct wall *sides = calloc(corners, sizeof *sides);
     if (!sides) return PACK_MEMORY;
     struct pack pack = {.count = heap->count, .fixed = heap->all - heap->count, .x = heap->x,
-                        .y = heap->y, .radius = heap->radius, .sides = sides,
+                        .y = heap->y, .radius = heap->radius, .fraction = heap->fraction, .sides = sides,
                         .wall_count = placer->wall_count, .walls = placer->walls,
                         .wraps_x = placer->wraps_x, .wraps_y = placer->wraps_y,
                         .seed = word_of(placer, STREAM_POSITION, number, 1)};
@@ -415,11 +433,12 @@ static bool place_random(struct placer *placer, const struct placement *placemen
             heap.radius[k] = draw_radius(species, word_of(placer, STREAM_RADIUS, number, k));
             filled += M_PI * heap.radius[k] * heap.radius[k];
         }
+        heap.fraction = filled / area;
         outcome = PACK_JAMMED;
         scale = sqrt(0.84 * area / filled);             /* what fits at random, in large regions */
         if (filled < 0.91 * area) {
-            first_guess(placer, &region, number, &heap);
-            outcome = heap_pack(placer, &region, number, &heap, &scale);
+            outcome = first_guess(placer, &region, number, &heap)
+                    ? heap_pack(placer, &region, number, &heap, &scale) : PACK_MEMORY;
         }
     }
     if (outcome == PACK_JAMMED) {

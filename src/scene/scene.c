@@ -80,11 +80,12 @@ static bool read_text(struct source_text *source, const struct scene_request *re
     source->text = request->text;
     if (source->text) return true;
     if (names_builtin(path)) {
-        char name[KEY_TEXT_MAX + 16];
-        snprintf(name, sizeof name, "scenes/%s.cfg", path);
+        char name[KEY_TEXT_MAX];
+        snprintf(name, sizeof name, "scenes/%.200s.cfg", path);
         const struct asset *asset = asset_find(name);
         if (asset) {
             source->text = (const char *)asset->bytes;
+            memcpy(source->file, name, strlen(name) + 1);
             return true;
         }
         if (!file_exists(path)) {
@@ -333,6 +334,7 @@ static const char *const unit_words[][3] = {
     {"1/area", "1/m^2", "1/cm^2"},      {"1/length", "1/m", "1/cm"},
     {"mass/area", "kg/m^2", "g/cm^2"},  {"pressure", "N/m", "dyn/cm"},
     {"stress", "N/m", "dyn/cm"},        {"speed^2", "m^2/s^2", "cm^2/s^2"},
+    {"1/time^2", "1/s^2", "1/s^2"},     {"angular momentum", "kg m^2/s", "g cm^2/s"},
     {"temperature", "m^2/s^2", "cm^2/s^2"}, {"mass/time", "kg/s", "g/s"},
 };
 
