@@ -4,9 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
+extern const struct model model_dsmc;
 extern const struct model model_lga, model_md;
 
-const struct model *const model_list[] = {&model_md, &model_lga, NULL};
+const struct model *const model_list[] = {&model_md, &model_lga, &model_dsmc, NULL};
 
 const struct model *model_find(const char *name)
 {
