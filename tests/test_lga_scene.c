@@ -16,7 +16,9 @@ static struct scene *load(const char *text, const char *const *overrides, uint32
         .place = true};
     struct scene *scene = scene_load(&request, &findings);
     if (!scene) fail_msg("%s", findings.list[0].text);
-    model_find("lga")->resolve(scene, &findings);
+    for (uint32_t p = 0; p < scene->phase_count; p++) {
+        model_find("lga")->resolve(scene->phases[p], &findings);
+    }
     if (findings.errors) fail_msg("%s", findings.list[findings.count - 1].text);
     return scene;
 }
