@@ -129,7 +129,7 @@ static void test_directories_are_made_with_their_parents(void **unused)
 {
     (void)unused;
     struct error error = {.text = ""};
-    char deep[300];
+    char deep[400];
     snprintf(deep, sizeof deep, "%s", in_folder("one/two/three"));
     CHECK(file_make_directory(deep, &error) && file_make_directory(deep, &error));
     CHECK(file_exists(deep));
