@@ -42,7 +42,8 @@ static bool same_key(const struct key *key, const void *a, const void *b)
             && (!ra->count || memcmp(ra->values, rb->values, ra->count * sizeof(double)) == 0);
     case KEY_TEXTS:
         if (ta->count != tb->count) return false;
-        for (uint32_t k = 0; k < ta->count; k++) if (strcmp(ta->texts[k], tb->texts[k])) return false;
+        for (uint32_t k = 0; k < ta->count; k++) if (strcmp(ta->texts[k],
+                                                            tb->texts[k])) return false;
         return true;
     case KEY_TEXT:   return strcmp(a, b) == 0;
     case KEY_BOOL:   return *(const bool *)a == *(const bool *)b;
@@ -135,13 +136,16 @@ static const char everything[] =
     "             inertia = \"sphere\"; density = 7.77; } );\n"
     "placements = ( { grains = \"b\"; region = [0, 0.5, 1, 1.5]; count = 50; spacing = 1.3;\n"
     "                 jitter = 0.7; temperature = 0.123456789012345678; velocity = (1, 2); },\n"
-    "               { kind = \"random\"; fraction = 0.4; outline = ((-1, 1), (-0.1, 1), (0, 2)); } );\n"
+    "               { kind = \"random\"; fraction = 0.4;\n"
+    "                 outline = ((-1, 1), (-0.1, 1), (0, 2)); } );\n"
     "sources = ( { position = (1, 1.9); rate = 7; from = 0.01; to = 0.05; grains = \"a\"; } );\n"
-    "walls = ( { shape = \"segment\"; from = (1, 0.2); to = (2, 0.2); opens = 0.1; closes = 0.2; },\n"
+    "walls = ( { shape = \"segment\"; from = (1, 0.2); to = (2, 0.2); opens = 0.1;\n"
+    "            closes = 0.2; },\n"
     "          { shape = \"arc\"; center = (2.5, 1); radius = 0.3; angles = (-30, 60);\n"
     "            amplitude = (0, 0.01); frequency = 50; } );\n"
     "obstacles = ( { shape = \"row\"; from = (2, 1); to = (2, 1.5); radius = 0.02; } );\n"
-    "screens = ( { kind = \"line\"; x = 2.9; bins = 36; } ); sinks = ( { region = [2, 0, 3, 0.1]; } );\n"
+    "screens = ( { kind = \"line\"; x = 2.9; bins = 36; } );\n"
+    "sinks = ( { region = [2, 0, 3, 0.1]; } );\n"
     "phases = ( { time = 0.05; set = [\"gravity=(0, -1)\"]; } );\n"
     "view = { size = [640, 480]; scale = \"log\"; range = (0.1, 2); };\n"
     "measure = { fields = [\"density\", \"velocity\"]; average = (0.02, 0.04); };\n";
@@ -196,7 +200,8 @@ static void test_phases_accumulate_and_share_the_grains(void **unused)
         "until = 4; box = [0, 0, 10, 10];\n"
         "grains = ( { radius = 0.5; restitution = 1; } ); placements = ( { count = 20; } );\n"
         "phases = ( { time = 1; set = [\"gravity=(0, -1)\"]; },\n"
-        "           { time = 2; set = [\"grains.[0].restitution=0.5\", \"bottom=open\"]; } );", NULL);
+        "           { time = 2; set = [\"grains.[0].restitution=0.5\", \"bottom=open\"]; } );",
+        NULL);
     CHECK(scene->phase_count == 3 && scene->phases[0] == scene);
     CHECK(scene->phase_times[0] == 0 && scene->phase_times[1] == 1 && scene->phase_times[2] == 2);
     CHECK(scene->phases[0]->gravity[1] == 0 && scene->phases[1]->gravity[1] == -1);

@@ -99,7 +99,8 @@ static void write_value(FILE *out, const struct key *key, const void *at)
         else fprintf(out, "0x%llxL", (unsigned long long)word64);
         break;
     case KEY_BOOL:   fputs(*(const bool *)at ? "true" : "false", out); break;
-    case KEY_CHOICE: write_text(out, key_choice_word(key->choices, *(const int *)at, word, sizeof word));
+    case KEY_CHOICE: write_text(out, key_choice_word(key->choices, *(const int *)at, word,
+                                                     sizeof word));
                      break;
     case KEY_TEXT:   write_text(out, at); break;
     case KEY_REALS:  write_numbers(out, ((const struct key_reals *)at)->values,
@@ -110,7 +111,8 @@ static void write_value(FILE *out, const struct key *key, const void *at)
     }
 }
 
-static void write_keys(FILE *out, const struct key_group *group, const void *target, const char *indent)
+static void write_keys(FILE *out, const struct key_group *group, const void *target,
+                       const char *indent)
 {
     for (uint32_t k = 0; k < group->count; k++) {
         const struct key *key = &group->keys[k];
