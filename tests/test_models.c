@@ -73,8 +73,8 @@ static const struct example examples[] = {
      "           velocity = (-0.5, 0.0); });"
      "screens = ({ kind = \"circle\"; center = (0.0, 0.0); radius = 14.0; });"
      "measure = { collisions = true; };", 6, true, true},
-    {"many grains for two threads", "until = 2.0; box = [0.0, 0.0, 120.0, 120.0];" PERIODIC GRAINS
-     "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 1.0; });", 2, false, false},
+    {"many grains for two threads", "until = 0.5; box = [0.0, 0.0, 75.0, 75.0];" PERIODIC GRAINS
+     "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 16.0; });", 0.5, false, false},
 };
 
 enum { EXAMPLES = sizeof examples / sizeof *examples };
@@ -102,7 +102,9 @@ static struct scene *load(const struct model *model, const char *text, const cha
         .overrides = &setting, .override_count = setting != NULL,
         .group_count = model_settings(groups), .place = true};
     struct scene *scene = scene_load(&request, findings);
-    if (scene && model && model->resolve) model->resolve(scene, findings);
+    for (uint32_t p = 0; scene && model && model->resolve && p < scene->phase_count; p++) {
+        model->resolve(scene->phases[p], findings);
+    }
     for (uint32_t k = 0; k < findings->count && k < FINDINGS_MAX; k++) {
         if (findings->list[k].kind == FINDING_ERROR) {
             fail_msg("%s: %s", where, findings->list[k].text);
@@ -188,17 +190,15 @@ static uint64_t digest_after(const struct trial *trial, int pieces, bool look, u
     return digest;
 }
 
-static uint64_t check_same_however_it_is_run(const struct trial *trial)
+static void check_same_however_it_is_run(const struct trial *trial, uint64_t straight)
 {
     omp_set_num_threads(1);
-    const uint64_t straight = digest_after(trial, 1, false, unlimited);
     EXPECT(straight == digest_after(trial, 1, false, unlimited));       /* repeatable */
     EXPECT(straight == digest_after(trial, 17, false, unlimited));      /* in pieces */
     EXPECT(straight == digest_after(trial, 17, true, unlimited));       /* watched */
     EXPECT(straight == digest_after(trial, 3, true, 5));                /* small budgets */
     omp_set_num_threads(2);
     EXPECT(straight == digest_after(trial, 1, false, unlimited));       /* two threads */
-    return straight;
 }
 
 /* Saved at `share` of the run and loaded into a fresh simulation, it goes on to the same end. */
@@ -239,13 +239,18 @@ static void check_digest_sees(const struct trial *trial, uint64_t straight)
     simulation_destroy(&sim);
 }
 
-static void run_trial(const struct trial *trial)
+/* Runs the whole contract and returns the digest of the end; but a setting that ends like `plain`
+ * (0: none yet) makes no difference to this scene and has been tested with it. */
+static uint64_t run_trial(const struct trial *trial, uint64_t plain)
 {
     if (getenv("SHOW")) fprintf(stderr, "%s\n", where);
-    const uint64_t straight = check_same_however_it_is_run(trial);
+    const uint64_t straight = digest_after(trial, 1, false, unlimited);
+    if (straight == plain) return straight;
+    check_same_however_it_is_run(trial, straight);
     check_digest_sees(trial, straight);
     check_resumed(trial, 0.3, straight);
     check_resumed(trial, 0.8, straight);        /* behind the change of phase where there is one */
+    return straight;
 }
 
 static effects_t effects_needed(const struct scene *scene)
@@ -267,7 +272,7 @@ static int run_variants(const struct model *model, const struct example *example
     if (!able) return 0;
     snprintf(where, sizeof where, "%s, %s", model->name, example->name);
     trial.scene = load(model, example->text, NULL);
-    run_trial(&trial);
+    const uint64_t plain_end = run_trial(&trial, 0);
     scene_free(trial.scene);
     int count = 1;
     for (uint32_t k = 0; model->settings && k < model->settings->count; k++) {
@@ -281,9 +286,8 @@ static int run_variants(const struct model *model, const struct example *example
             snprintf(setting, sizeof setting, "%s.%s=%s", model->name, key->name, word);
             snprintf(where, sizeof where, "%s, %s", setting, example->name);
             trial.scene = load(model, example->text, setting);
-            run_trial(&trial);
+            count += run_trial(&trial, plain_end) != plain_end;
             scene_free(trial.scene);
-            count++;
         }
     }
     return count;
