@@ -22,10 +22,10 @@ static bool measure_model(const struct bench_case *which, struct bench_result *r
 {
     char model[64];
     snprintf(model, sizeof model, "model=%s", which->model);
-    const char *const overrides[] = {model};
+    const char *const overrides[] = {model, which->set};
     struct setup setup;
-    const struct setup_request request = {.path = which->text ? which->name : "hourglass", .text = which->text,
-        .overrides = overrides, .override_count = 1, .place = true};
+    const struct setup_request request = {.path = which->scene, .text = which->text,
+        .overrides = overrides, .override_count = which->set ? 2 : 1, .place = true};
     struct simulation sim = {0};
     bool done = setup_load(&setup, &request, error)
         && simulation_create(&sim, setup.model, setup.scene, error);
@@ -147,15 +147,18 @@ static const char gas_scene[] =
 
 const struct bench_case bench_list[] = {
     {"md-gas", "20,000 dissipative discs, area fraction 0.2, periodic", "particle-steps/cpu-s",
-     true, measure_model, gas_scene, "md", 0.05, true},
-    {"lga-hourglass", "the hourglass as a lattice gas", "ticks/cpu-s", true, measure_model, NULL,
-     "lga", 1.0, false},
-    {"map-1e6", "temperature map of 1,000,000 grains", "cpu-ms", false, measure_map, NULL, NULL, 1e6, false},
-    {"png", "encoding a frame of 1280 x 720, level 1", "cpu-ms", false, measure_png, NULL, NULL, 0, false},
+     true, measure_model, .scene = "md-gas", .text = gas_scene, .model = "md", .amount = 0.05,
+     .per_grain = true},
+    {"lga-hourglass", "the hourglass with 20,000 grains as a lattice gas", "ticks/cpu-s", true,
+     measure_model, .scene = "hourglass", .set = "grains.[0].radius=[0.018, 0.027]",
+     .model = "lga", .amount = 3},
+    {"map-1e6", "temperature map of 1,000,000 grains", "cpu-ms", false, measure_map, .amount = 1e6},
+    {"png", "encoding a frame of 1280 x 720, level 1", "cpu-ms", false, measure_png,
+     .amount = 1},
     {"frame-5e3", "drawing and encoding 5,000 grains, 1280 x 720", "cpu-ms", false, measure_frame,
-     NULL, NULL, 5e3, false},
+     .amount = 5e3},
     {"frame-1e5", "drawing and encoding 100,000 grains, 1280 x 720", "cpu-ms", false, measure_frame,
-     NULL, NULL, 1e5, false},
+     .amount = 1e5},
     {0}
 };
 
