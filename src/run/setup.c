@@ -53,7 +53,7 @@ static void resolve(struct setup *setup)
     }
 }
 
-/* A run's scene keeps the name of the scene that it was made from, not that of the file scene.cfg. */
+/* A run's scene keeps the name of the scene it was made from, not that of its file scene.cfg. */
 static void keep_name(struct setup *setup, const char *run)
 {
     struct error ignored;

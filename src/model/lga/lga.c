@@ -376,8 +376,10 @@ const struct model model_lga = {
     .name     = "lga",
     .summary  = "Grains that hop on a triangular lattice, seven to a node: the fastest flow of sand.",
     .work     = "ticks",
-    .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_POLYDISPERSE | EFFECT_PERIODIC
-              | EFFECT_WALLS | EFFECT_GATES | EFFECT_INFLOW | EFFECT_OUTFLOW,
+    /* Friction is the lattice's own: its slopes stand without a coefficient, and `s` says how firmly
+     * a grain with one-sided support holds. */
+    .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_FRICTION | EFFECT_POLYDISPERSE
+              | EFFECT_PERIODIC | EFFECT_WALLS | EFFECT_GATES | EFFECT_INFLOW | EFFECT_OUTFLOW,
     .settings = &group,
     .resolve  = lga_resolve,
     .memory   = lga_memory,
