@@ -99,7 +99,8 @@ static void test_shapes_cover_their_area(void **unused)
     clear();
     ink_triangle(ink, x, y, black);
     finish();
-    const double triangle = 0.5 * fabs((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]));
+    const double triangle = 0.5 * fabs((x[1] - x[0]) * (y[2] - y[0])
+                                       - (x[2] - x[0]) * (y[1] - y[0]));
     CHECK_NEAR(blackness(NULL, NULL), triangle, 0.01 * triangle);
     clear();
     ink_disc(ink, 100.5, 60.25, 40, black);
@@ -228,7 +229,8 @@ static void test_text_is_as_wide_as_it_claims(void **unused)
             finish();
             uint32_t first, last;
             extent(&first, &last);
-            const double left = align == INK_LEFT ? 50 : align == INK_CENTER ? 100 - width / 2 : 150 - width;
+            const double left = align == INK_LEFT ? 50
+                : align == INK_CENTER ? 100 - width / 2 : 150 - width;
             CHECK_NEAR(first, left + 0.1 * size, 1.2);
             CHECK_NEAR(last + 1, left + width - 0.1 * size, 1.2);
         }

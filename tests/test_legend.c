@@ -145,7 +145,8 @@ static int make_scene(void **unused)
     grains.contacts[0] = (struct contact){0, 1, 1.5f, 2, 3e-3f, 0, 0};
     grains.contacts[1] = (struct contact){1, 2, 2.5f, 2, 1e-3f, 2e-3f, 0};
     if (!field_create(&field, 0, 0, 1, 8, 6, 1, &error)) return -1;
-    snprintf(field.label, sizeof field.label, "granular temperature (cm^2/s^2), mean t = 1.25 .. 2.5");
+    snprintf(field.label, sizeof field.label,
+             "granular temperature (cm^2/s^2), mean t = 1.25 .. 2.5");
     for (int k = 0; k < 48; k++) field.values[k] = k;
     scene.units = UNITS_CGS;
     scene.radius_mean = 0.5;
@@ -216,7 +217,8 @@ static void check_marks(const struct view *view, const double area[4])
             const bool frame = mark->kind == MARK_BAR || b->kind == MARK_BAR;
             if (other == k || ground || !overlap(mark, b)) continue;
             if (frame && strcmp(b->text, "rectangle") == 0) continue;   /* a bar's outline */
-            fail_msg("%gx%g: '%s' and '%s' overlap", view->size[0], view->size[1], mark->text, b->text);
+            fail_msg("%gx%g: '%s' and '%s' overlap", view->size[0], view->size[1], mark->text,
+                     b->text);
         }
     }
 }
@@ -355,13 +357,19 @@ static void test_labels_are_filled_in(void **unused)
     static const struct { const char *text, *filled; } labels[] = {
         {"t = {t} {time_unit}", "t = 1.25 s"}, {"{t:.3f}|{t:.1e}", "1.250|1.2e+00"},
         {"N = {n}", "N = 4"}, {"{steps} steps, {mu:.1f}", "12000 steps, 0.5"},
-        {"{unknown} {", "{unknown} {"}, {"{{t} = {t}", "{t} = 1.25"}, {"{t:%n}{t:.99f}", "{t:%n}{t:.99f}"},
+        {"{unknown} {", "{unknown} {"}, {"{{t} = {t}", "{t} = 1.25"},
+        {"{t:%n}{t:.99f}", "{t:%n}{t:.99f}"},
         {"{units}", "cgs"}, {"", ""}};
     for (size_t k = 0; k < sizeof labels / sizeof *labels; k++) {
         char text[100];
         overlay_label(&picture, labels[k].text, text, sizeof text);
         assert_string_equal(text, labels[k].filled);
     }
+    char raised[40];
+    overlay_label_unit("kg m/s^2", raised, sizeof raised);
+    assert_string_equal(raised, "kg\u00b7m/s\u00b2");
+    overlay_label_raise("in 1/cm^3, mean", raised, sizeof raised);
+    assert_string_equal(raised, "in 1/cm\u00b3, mean");
     char narrow[6];
     overlay_label(&picture, "{steps}{steps}", narrow, sizeof narrow);
     assert_string_equal(narrow, "12000");
@@ -397,7 +405,8 @@ static void test_arrows_of_many_grains_are_thinned_out(void **unused)
         many.radius[i] = 0.5;
     }
     const struct view view = full_view(1200, 1200, THEME_WHITE);
-    const struct picture picture = {.scene = &scene, .view = &view, .grains = &many, .range = {0, 1}};
+    const struct picture picture = {.scene = &scene, .view = &view, .grains = &many,
+                                    .range = {0, 1}};
     const struct transform t = {6, 0, 200};
     page.count = 0;
     overlay_arrows(&page, &picture, &t);

@@ -21,7 +21,7 @@ struct example {
     bool   open;                /* may grains be outside of the box? */
 };
 
-#define SOFT "stiffness = 10000.0;"
+#define SOFT "stiffness = 40000.0;"
 #define GRAINS "grains = ({ radius = 0.5; restitution = 0.8; " SOFT " });"
 #define GAS "placements = ({ kind = \"square\"; spacing = 1.8; temperature = 1.0; });"
 #define PERIODIC "left = \"periodic\"; right = \"periodic\";"                \

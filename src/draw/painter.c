@@ -55,7 +55,7 @@ struct frame {
     struct splat_area area;     /* the part of the picture that shows the scene */
     double range[2];
     struct fieldlayer layer;    /* layer.field NULL: no field */
-    unsigned style;
+    struct splat_style style;
     bool by_gl;
 };
 
@@ -215,6 +215,24 @@ static bool frame_by_gl(const struct picture *picture)
     return picture->grains && picture->grains->count <= GL_GRAINS_MAX;
 }
 
+/* Rims and shading fade in with the size of the grains, since they need some pixels to be seen:
+ * the same for all, or the larger of a mixture would look like another kind; and from the scene's
+ * mean radius where there is one, so that a film does not flicker. */
+static struct splat_style frame_style(const struct frame *frame)
+{
+    const struct picture *const picture = frame->picture;
+    const struct grains *const grains = picture->grains;
+    double radius = picture->scene->radius_mean;
+    if (!(radius > 0) && grains) {
+        for (uint32_t i = 0; i < grains->count; i++) radius += grains->radius[i] / grains->count;
+    }
+    const double pixels = radius * frame->transform.scale;
+    return (struct splat_style){
+        .rim = picture->view->rims ? (float)fmin(1, fmax(0, (pixels - 2.5) * 0.4)) : 0,
+        .shade = picture->view->shade ? (float)fmin(1, fmax(0, (pixels - 1.2) * 0.5)) : 0,
+    };
+}
+
 static bool frame_prepare(struct frame *frame, const struct painter *painter,
                           const struct picture *picture, struct error *error)
 {
@@ -225,9 +243,9 @@ static bool frame_prepare(struct frame *frame, const struct painter *painter,
         return error_set_code(error, EXIT_SCENE, "view.colormap: unknown map '%s'; there are %s",
                               view->colormap, colormap_names());
     }
-    frame->style = (view->rims ? SPLAT_RIM : 0u) | (view->shade ? SPLAT_SHADE : 0u);
     frame->by_gl = frame_by_gl(picture);
     frame_place(frame, painter);
+    frame->style = frame_style(frame);
     frame_field(frame);
     return true;
 }

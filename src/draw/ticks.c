@@ -176,7 +176,8 @@ static void linear_ticks(struct ticks *ticks, const struct request *request, uin
 static void sqrt_ticks(struct ticks *ticks, const struct request *request, uint32_t wanted)
 {
     const double gap = 0.8 / wanted, low = request->range[0];
-    struct step s = step_choose(low, request->range[1], wanted > 4 ? (wanted + 2) / 2 : wanted < 3 ? wanted : 3);
+    const uint32_t even = wanted > 4 ? (wanted + 2) / 2 : wanted < 3 ? wanted : 3;
+    struct step s = step_choose(low, request->range[1], even);
     int64_t first, last;
     multiples(s, low, request->range[1], &first, &last);
     for (int64_t k = last; k >= first; k--) insert(ticks, request, k * s.mantissa, s.exponent, gap);

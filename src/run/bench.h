@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 struct bench_result {
@@ -23,6 +24,7 @@ struct bench_case {
     const char *text;           /* what the measuring function needs: a scene ... */
     const char *model;
     double amount;              /* ... simulated time, a number of grains */
+    bool per_grain;             /* work is steps times grains */
 };
 
 extern const struct bench_case bench_list[];    /* ends with a NULL name */

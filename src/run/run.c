@@ -326,7 +326,7 @@ static bool carry_out(struct run *run, struct run_result *result)
     if (!manifest_save(&manifest, run->directory, run->error)) return false;
     if (request->resume && !load_checkpoint(run)) return false;
     run->time_start = simulation_count(&run->sim).time;
-    run->start = run->rate_mark = run->checkpoint_wall = clock_wall();
+    run->rate_mark = run->checkpoint_wall = clock_wall();
     bool done = simulate(run);
     if (done) done = writer_finish(&run->writer, wall_now(run), drawn_one, run, run->error);
     fill_result(run, result);

@@ -108,7 +108,10 @@ bool writer_open(struct writer *writer, const struct simulation *sim, const char
     snprintf(writer->directory, sizeof writer->directory, "%s", directory);
     set_schedules(writer, scene);
     writer->encoder = encoder_create(encoders, error);
-    if (!writer->encoder || !open_pictures(writer, resume, error)) return false;
+    if (!writer->encoder) return false;
+    const enum part before = enter(writer, PART_draw);
+    if (!open_pictures(writer, resume, error)) return false;
+    enter(writer, before);
     const unsigned formats = 1 << MAPPER_BIT_png | 1 << MAPPER_BIT_npy | 1 << MAPPER_BIT_vti;
     if (writer->schedules[WRITER_MAP].interval > 0
         && !mapper_open(&writer->mapper, scene, &scene->view, &scene->measure, formats, error)) {

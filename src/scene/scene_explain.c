@@ -173,7 +173,6 @@ static bool derive(const struct scene *scene, uint32_t bit, struct scene_reason 
                                            g[1])
                                       : off(reason, "gravity is zero");
     case EFFECT_BIT_DISSIPATION:  return dissipation(scene, reason);
-    case EFFECT_BIT_ROTATION:
     case EFFECT_BIT_FRICTION:     return friction(scene, reason);
     case EFFECT_BIT_POLYDISPERSE: return polydisperse(scene, reason);
     case EFFECT_BIT_MIXTURE:      return mixture(scene, reason);
@@ -190,6 +189,9 @@ static bool derive(const struct scene *scene, uint32_t bit, struct scene_reason 
     case EFFECT_BIT_SCREEN:       return counted(scene, reason, "screens", scene->screen_count);
     case EFFECT_BIT_COLLISION_RATE: return collision_rate(scene, reason);
     case EFFECT_BIT_SHEAR:        return off(reason, "no border is sheared");
+    /* How friction is carried is a model's own: discs spin, springs remember, lattices do
+     * neither. */
+    case EFFECT_BIT_ROTATION:     return off(reason, "no torque turns a grain");
     default:
         return off(reason, "the model's tangential law does not ask for it");
     }
