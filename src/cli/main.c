@@ -8,9 +8,12 @@
 
 static int unknown_command(const char *word)
 {
-    const char *names[sizeof cli_commands / sizeof *cli_commands];
+    enum { NAMES_MAX = 64 };
+    const char *names[NAMES_MAX];
     size_t count = 0;
-    for (const struct command *c = cli_commands; c->name; c++) names[count++] = c->name;
+    for (const struct command *c = cli_commands; c->name && count < NAMES_MAX - 1; c++) {
+        names[count++] = c->name;
+    }
     names[count] = NULL;
     const char *nearest = options_nearest(word, names);
     fprintf(stderr, "sandreel: unknown command '%s'", word);
