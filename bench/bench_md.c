@@ -4,6 +4,7 @@
  * wide; copies of the tile, side by side, make the bed.  The first steps after that load the
  * springs again and are not measured.  Without friction the bed flows on a little, which wants a
  * wider skin.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "bench_md.h"
 

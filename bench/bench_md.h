@@ -1,5 +1,6 @@
 /* bench_md.h - how fast soft discs are: a settled bed, the case that other DEM codes are measured
- * on too (gran/hooke/history of LAMMPS). */
+ * on too (gran/hooke/history of LAMMPS).
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef BENCH_MD_H
 #define BENCH_MD_H
 

@@ -1,5 +1,6 @@
 /* md.c - prints how fast soft discs are (bench_md.h): ./bench_md [STEPS [TILES [DATA-FILE]]]
- * DATA-FILE: also writes the settled tile for LAMMPS. */
+ * DATA-FILE: also writes the settled tile for LAMMPS.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "bench_md.h"
 
 #include <stdio.h>

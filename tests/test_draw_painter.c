@@ -1,5 +1,6 @@
 /* test_draw_painter.c - whole pictures: both OpenGL backends and both ways of drawing grains give
- * the same; grains lie where the scene says and cover what they should. */
+ * the same; grains lie where the scene says and cover what they should.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/rng.h"
 #include "draw/canvas.h"
 #include "draw/colormap.h"

@@ -1,5 +1,6 @@
 /* test_md_gas.c - many soft discs: conserved energy, the same bytes however they are run,
- * effects that are absent cost nothing, grains that enter and leave. */
+ * effects that are absent cost nothing, grains that enter and leave.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scenes.h"
 
 #include <omp.h>

@@ -1,6 +1,7 @@
 /* test_md_obstacle.c - the stream and the obstacle of paper 004 (Table I, discs): force at two
  * radii and on a flat obstacle, its linearity in density and radius, the angle of scattering.
- * References: MODELS section 5, found with independent programs. */
+ * References: MODELS section 5, found with independent programs.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scenes.h"
 
 /* R_ob = radius, rho = density; the flat obstacle is a row of discs as large as the mean grain,

@@ -1,6 +1,7 @@
 /* test_md_pair.c - one collision of two soft discs against theory: restitution, contact time,
  * order of convergence, conserved momenta, Coulomb's limit.  References are the formulas and the
- * numbers of the literature, not the code. */
+ * numbers of the literature, not the code.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scenes.h"
 
 #include "model/md/md_law.h"

@@ -1,4 +1,5 @@
-/* test_md_walls.c - soft discs at walls: rest, rolling, joints, gates, moving and turning walls. */
+/* test_md_walls.c - soft discs at walls: rest, rolling, joints, gates, moving and turning walls.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scenes.h"
 
 #define DISC "grains = ({ name = \"disc\"; radius = 0.5; density = 1.2732395447351628; %s });"

@@ -1,4 +1,5 @@
-/* test_source.c - grains that enter: a pure function of seed, source and number. */
+/* test_source.c - grains that enter: a pure function of seed, source and number.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scenes.h"
 
 #include "model/source.h"

@@ -1,4 +1,4 @@
-/* file.c - see file.h. */
+/* file.c - see file.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/file.h"
 
 #include <assert.h>

@@ -4,6 +4,7 @@
  * 2 or 5 times a power of ten, so that arrows in a film stay comparable.  Among thousands of
  * grains no arrow could be told from the next, so there they are averaged over the cells of a
  * grid, one arrow a cell.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/overlay_arrows.h"
 

@@ -1,4 +1,5 @@
-/* transform.h - where a point of the scene lies in the picture: square pixels, y turned over. */
+/* transform.h - where a point of the scene lies in the picture: square pixels, y turned over.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef TRANSFORM_H
 #define TRANSFORM_H
 

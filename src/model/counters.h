@@ -1,4 +1,5 @@
-/* counters.h - running totals of a model, listed once: struct, log columns and help. */
+/* counters.h - running totals of a model, listed once: struct, log columns and help.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef COUNTERS_H
 #define COUNTERS_H
 

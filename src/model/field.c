@@ -1,4 +1,4 @@
-/* field.c - see field.h. */
+/* field.c - see field.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/field.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* bench.c - see bench.h. */
+/* bench.c - see bench.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/bench.h"
 
 #include "base/clock.h"

@@ -1,4 +1,4 @@
-/* md_look.c - see md_look.h. */
+/* md_look.c - see md_look.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/md/md_look.h"
 
 #include "model/md/md_walls.h"

@@ -3,6 +3,7 @@
  * Three short loops over a window that stays in the first cache level: which links touch; what
  * the touching ones need, copied side by side; their forces, many at once by SIMD.  The last one
  * is compiled for each combination of effects (STYLE rule 4) and for each width of SIMD unit.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/md/md_pairs.h"
 

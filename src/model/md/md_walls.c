@@ -4,6 +4,7 @@
  * asks for the nearest point.  At a joint of two walls the end of one counts only if the other is
  * not touched in its interior, and once for both; so a disc passes a polyline's joints as if they
  * were not there, and its tangential spring goes along.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/md/md_walls.h"
 
