@@ -2,6 +2,8 @@
 
 Called with the path of the binary.  Runs are small (a hundred soft discs, a small lattice gas), so
 that all of it takes about a minute; nothing depends on how fast the machine is.
+
+SPDX-License-Identifier: GPL-3.0-or-later
 """
 import csv
 import glob

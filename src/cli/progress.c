@@ -1,4 +1,7 @@
-/* progress.c - see progress.h. */
+/* progress.c - see progress.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/progress.h"
 
 #include "base/clock.h"
