@@ -191,8 +191,7 @@ static bool derive(const struct scene *scene, uint32_t bit, struct scene_reason 
     case EFFECT_BIT_SHEAR:        return off(reason, "no border is sheared");
     /* How friction is carried is a model's own: discs spin, springs remember, lattices do
      * neither. */
-    case EFFECT_BIT_ROTATION:
-        return off(reason, "no torque turns a grain");
+    case EFFECT_BIT_ROTATION:     return off(reason, "no torque turns a grain");
     default:
         return off(reason, "the model's tangential law does not ask for it");
     }

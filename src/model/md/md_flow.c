@@ -101,6 +101,9 @@ static bool let_batch_in(struct md *md, uint32_t s)
         if (source->kind == SOURCE_POINT) {
             grain = md->batch[k];                               /* it may have waited there */
             if (!has_room(md, &grain)) return false;
+        } else if (!has_room(md, &grain)) {
+            md->rejected++;                                     /* a stream does not wait */
+            continue;
         }
         md_flow_add(md, &grain, 0);
         md->tally.mass_in += scene_mass(&md->scene->species[grain.species], grain.radius);

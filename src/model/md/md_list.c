@@ -57,7 +57,7 @@ bool md_list_create(struct md *md)
     md->strip_max = n / STRIP_GRAINS + 1;
     s->cell_max = 2 * n + 64;
     const bool springs = md->springs || md->law.spring;
-    return arena_array(arena, &md->links, md->link_max)
+    return arena_array(arena, &md->links, md->link_max + LINKS_AHEAD)
         && arena_array(arena, &md->springs, springs ? md->link_max : 0)
         && arena_array(arena, &md->incoming, md->link_max / 2)
         && arena_array(arena, &md->cross_push, md->strip_max > 1 ? md->link_max / 2 : 0)

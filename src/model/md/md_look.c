@@ -168,7 +168,7 @@ void md_look_count(const void *state, struct counters *out)
     *out = (struct counters){
         .time = md_time(md), .steps = md->steps, .grains = md->count, .grains_in = md->grains_in,
         .grains_out = md->grains_out, .collisions = md->begun, .tangential = md->tangential,
-        .rebuilds = md->rebuilds,
+        .rejected = md->rejected, .rebuilds = md->rebuilds,
     };
     count_grains(md, out);
     for (uint32_t k = 0; k < md->link_count; k++) {

@@ -51,6 +51,7 @@ FORCE_INLINE void find(struct md *md, uint32_t first, uint32_t last, struct md_w
     uint32_t n = 0;
     for (uint32_t k = first; k < last; k++) {
         const struct link link = links[k];
+        __builtin_prefetch(&grains[links[k + LINKS_AHEAD].j & LINK_INDEX]);
         const uint32_t j = link.j & LINK_INDEX;
         const struct grain *a = &grains[link.i], *b = &grains[j];
         double dx = a->x - b->x, dy = a->y - b->y;
