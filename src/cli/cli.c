@@ -1,5 +1,7 @@
 /* cli.c - the table of commands: what `help` tells, which options each takes, who does it.
- * SPDX-License-Identifier: GPL-3.0-or-later */
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 
 #define SIMULATING OPTION_model, OPTION_method, OPTION_set, OPTION_seed, OPTION_until, OPTION_quick

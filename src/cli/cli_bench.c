@@ -1,5 +1,7 @@
 /* cli_bench.c - `bench [NAME...]`: the table of timings, and ratios to an earlier one.
- * SPDX-License-Identifier: GPL-3.0-or-later */
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "base/file.h"

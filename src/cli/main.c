@@ -1,5 +1,7 @@
 /* main.c - finds the command, parses its options, carries it out.
- * SPDX-License-Identifier: GPL-3.0-or-later */
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 

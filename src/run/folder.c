@@ -1,4 +1,7 @@
-/* folder.c - see folder.h.  SPDX-License-Identifier: GPL-3.0-or-later */
+/* folder.c - see folder.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/folder.h"
 
 #include <dirent.h>
