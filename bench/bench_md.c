@@ -102,7 +102,7 @@ static bool measure(const struct bench_md_case *what, struct scene *scene, int t
         const double work = (double)what->steps * result->grains;
         const double rate = work / (clock_wall() - wall), core = work / (clock_process() - cpu);
         result->particle_steps[threads] = fmax(result->particle_steps[threads], rate);
-        if (threads == 1) result->per_core = fmax(result->per_core, core);
+        result->per_core[threads] = fmax(result->per_core[threads], core);
     }
     struct grains grains;
     if (done && grains_create(&grains, result->grains, 4 * result->grains, error)) {
