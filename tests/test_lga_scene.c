@@ -16,7 +16,9 @@ static struct scene *load(const char *text, const char *const *overrides, uint32
         .place = true};
     struct scene *scene = scene_load(&request, &findings);
     if (!scene) fail_msg("%s", findings.list[0].text);
-    model_find("lga")->resolve(scene, &findings);
+    for (uint32_t p = 0; p < scene->phase_count; p++) {
+        model_find("lga")->resolve(scene->phases[p], &findings);
+    }
     if (findings.errors) fail_msg("%s", findings.list[findings.count - 1].text);
     return scene;
 }
@@ -181,6 +183,32 @@ static void test_a_gate_holds_opens_and_closes_upon_grains(void **unused)
     scene_free(scene);
 }
 
+static void test_time_goes_on_where_a_phase_ticks_otherwise(void **unused)
+{
+    (void)unused;
+    static const char text[] = GAS "placements = ({ count = 50; temperature = 1.0; });"
+        "lga = { tick = 0.5; }; phases = ({ time = 5.0; set = [\"lga.tick=0.3\"]; });";
+    struct scene *scene = load(text, NULL, 0);
+    struct simulation sim = start(scene), resumed = start(scene);
+    struct archive save, loaded;
+    struct error error;
+    simulation_advance(&sim, 11, UINT64_MAX, NULL);
+    CHECK(simulation_count(&sim).steps == 10 + 20);
+    CHECK_NEAR(simulation_count(&sim).time, 11, 1e-9);
+    archive_begin_save(&save);
+    CHECK(simulation_save(&sim, &save, &error));
+    archive_begin_load(&loaded, save.bytes, save.size);
+    CHECK(simulation_load(&resumed, &loaded, &error));
+    CHECK_NEAR(simulation_count(&resumed).time, 11, 1e-9);
+    simulation_advance(&sim, 20, UINT64_MAX, NULL);
+    simulation_advance(&resumed, 20, UINT64_MAX, NULL);
+    CHECK(simulation_digest(&sim) == simulation_digest(&resumed));
+    archive_end(&save);
+    simulation_destroy(&sim);
+    simulation_destroy(&resumed);
+    scene_free(scene);
+}
+
 static void test_what_the_lattice_cannot_show_is_told(void **unused)
 {
     (void)unused;
@@ -217,6 +245,7 @@ int main(void)
         cmocka_unit_test(test_a_default_fall_takes_as_long_as_free_fall),
         cmocka_unit_test(test_grains_at_rest_are_packed_without_overlap),
         cmocka_unit_test(test_a_gate_holds_opens_and_closes_upon_grains),
+        cmocka_unit_test(test_time_goes_on_where_a_phase_ticks_otherwise),
         cmocka_unit_test(test_what_the_lattice_cannot_show_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,5 @@
-/* test_place.c - grains at the start: lattices, random packings, temperature; none overlaps. */
+/* test_place.c - grains at the start: lattices, random packings, temperature; none overlaps.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
 #include "scene/scene.h"
 
@@ -111,13 +112,15 @@ static void check_packing(const char *text, double area, double fraction)
     scene_free(scene);
 }
 
-#define TORUS "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";\n"
+#define TORUS "left = \"periodic\"; right = \"periodic\";\n" \
+              "bottom = \"periodic\"; top = \"periodic\";\n"
 
 static void test_random_packings_reach_the_asked_fraction_without_overlap(void **unused)
 {
     (void)unused;
     check_packing(HEAD SPREAD "placements = ( { kind = \"random\"; fraction = 0.3; } );", 400, 0.3);
-    check_packing(HEAD SPREAD "placements = ( { kind = \"random\"; fraction = 0.78; } );", 400, 0.78);
+    check_packing(HEAD SPREAD "placements = ( { kind = \"random\"; fraction = 0.78; } );", 400,
+                  0.78);
     check_packing(HEAD SPREAD TORUS "placements = ( { kind = \"random\"; fraction = 0.84; } );",
                   400, 0.84);
     check_packing(HEAD ONE TORUS "placements = ( { kind = \"random\"; fraction = 0.82; } );",

@@ -1,4 +1,5 @@
-/* test_scene.c - a scene as a whole: round trip, built-in scenes, effects, phases, quick forms. */
+/* test_scene.c - a scene as a whole: round trip, built-in scenes, effects, phases, quick forms.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/asset.h"
 #include "base/file.h"
 #include "check.h"
@@ -42,7 +43,8 @@ static bool same_key(const struct key *key, const void *a, const void *b)
             && (!ra->count || memcmp(ra->values, rb->values, ra->count * sizeof(double)) == 0);
     case KEY_TEXTS:
         if (ta->count != tb->count) return false;
-        for (uint32_t k = 0; k < ta->count; k++) if (strcmp(ta->texts[k], tb->texts[k])) return false;
+        for (uint32_t k = 0; k < ta->count; k++) if (strcmp(ta->texts[k],
+                                                            tb->texts[k])) return false;
         return true;
     case KEY_TEXT:   return strcmp(a, b) == 0;
     case KEY_BOOL:   return *(const bool *)a == *(const bool *)b;
@@ -135,13 +137,16 @@ static const char everything[] =
     "             inertia = \"sphere\"; density = 7.77; } );\n"
     "placements = ( { grains = \"b\"; region = [0, 0.5, 1, 1.5]; count = 50; spacing = 1.3;\n"
     "                 jitter = 0.7; temperature = 0.123456789012345678; velocity = (1, 2); },\n"
-    "               { kind = \"random\"; fraction = 0.4; outline = ((-1, 1), (-0.1, 1), (0, 2)); } );\n"
+    "               { kind = \"random\"; fraction = 0.4;\n"
+    "                 outline = ((-1, 1), (-0.1, 1), (0, 2)); } );\n"
     "sources = ( { position = (1, 1.9); rate = 7; from = 0.01; to = 0.05; grains = \"a\"; } );\n"
-    "walls = ( { shape = \"segment\"; from = (1, 0.2); to = (2, 0.2); opens = 0.1; closes = 0.2; },\n"
+    "walls = ( { shape = \"segment\"; from = (1, 0.2); to = (2, 0.2); opens = 0.1;\n"
+    "            closes = 0.2; },\n"
     "          { shape = \"arc\"; center = (2.5, 1); radius = 0.3; angles = (-30, 60);\n"
     "            amplitude = (0, 0.01); frequency = 50; } );\n"
     "obstacles = ( { shape = \"row\"; from = (2, 1); to = (2, 1.5); radius = 0.02; } );\n"
-    "screens = ( { kind = \"line\"; x = 2.9; bins = 36; } ); sinks = ( { region = [2, 0, 3, 0.1]; } );\n"
+    "screens = ( { kind = \"line\"; x = 2.9; bins = 36; } );\n"
+    "sinks = ( { region = [2, 0, 3, 0.1]; } );\n"
     "phases = ( { time = 0.05; set = [\"gravity=(0, -1)\"]; } );\n"
     "view = { size = [640, 480]; scale = \"log\"; range = (0.1, 2); };\n"
     "measure = { fields = [\"density\", \"velocity\"]; average = (0.02, 0.04); };\n";
@@ -178,6 +183,28 @@ static void test_every_builtin_scene_loads_in_both_forms_and_survives_the_round_
     CHECK(count >= 5);
 }
 
+static void test_the_example_of_the_guide_is_a_scene(void **unused)
+{
+    (void)unused;
+    char path[1024];
+    const char *root = getenv("SOURCE_ROOT");
+    struct error error;
+    size_t size;
+    snprintf(path, sizeof path, "%s/docs/scenes.md", root ? root : ".");
+    char *text = file_load(path, 1 << 20, &size, &error);
+    CHECK(text != NULL);
+    char *begin = strstr(strstr(text, "<!-- example"), "```\n") + 4;
+    *strstr(begin, "```") = 0;
+    for (int quick = 0; quick < 2; quick++) {
+        struct scene *scene = load("guide.cfg", begin, quick ? "quick=true" : NULL);
+        CHECK(scene->placed.count > (quick ? 400 : 1000) && scene->phase_count == 2);
+        CHECK(findings.warnings == 0);
+        check_round_trip(scene);
+        scene_free(scene);
+    }
+    free(text);
+}
+
 static void test_one_override_sets_the_number_of_grains_in_the_hourglass(void **unused)
 {
     (void)unused;
@@ -196,7 +223,8 @@ static void test_phases_accumulate_and_share_the_grains(void **unused)
         "until = 4; box = [0, 0, 10, 10];\n"
         "grains = ( { radius = 0.5; restitution = 1; } ); placements = ( { count = 20; } );\n"
         "phases = ( { time = 1; set = [\"gravity=(0, -1)\"]; },\n"
-        "           { time = 2; set = [\"grains.[0].restitution=0.5\", \"bottom=open\"]; } );", NULL);
+        "           { time = 2; set = [\"grains.[0].restitution=0.5\", \"bottom=open\"]; } );",
+        NULL);
     CHECK(scene->phase_count == 3 && scene->phases[0] == scene);
     CHECK(scene->phase_times[0] == 0 && scene->phase_times[1] == 1 && scene->phase_times[2] == 2);
     CHECK(scene->phases[0]->gravity[1] == 0 && scene->phases[1]->gravity[1] == -1);
@@ -211,6 +239,31 @@ static void test_phases_accumulate_and_share_the_grains(void **unused)
     CHECK(scene_at(scene, 99) == scene->phases[2]);
     check_round_trip(scene);
     scene_free(scene);
+}
+
+static void test_what_a_model_chose_for_a_phase_is_written_with_it(void **unused)
+{
+    (void)unused;
+    struct scene *scene = load("phases.cfg",
+        "until = 4; box = [0, 0, 10, 10];\n"
+        "grains = ( { radius = 0.5; restitution = 1; } ); placements = ( { count = 20; } );\n"
+        "phases = ( { time = 1; set = [\"gravity=(0, -1)\"]; },\n"
+        "           { time = 2; set = [\"grains.[0].stiffness=7\"]; } );", NULL);
+    scene->species[0].stiffness = 100;                  /* as a model's resolve would */
+    scene->phases[1]->species[0].stiffness = 300;
+    char folder[] = "/tmp/sandreel-scene-XXXXXX", path[100];
+    CHECK(mkdtemp(folder) != NULL);
+    snprintf(path, sizeof path, "%s/phases.cfg", folder);
+    struct error error;
+    CHECK(scene_write(scene, path, &error));
+    struct scene *again = load(path, NULL, NULL);
+    unlink(path);
+    rmdir(folder);
+    CHECK(again->species[0].stiffness == 100);
+    CHECK(again->phases[1]->species[0].stiffness == 300 && again->phases[1]->gravity[1] == -1);
+    CHECK(again->phases[2]->species[0].stiffness == 7);
+    scene_free(scene);
+    scene_free(again);
 }
 
 /* The word and the reason of an effect, as check --explain tells them. */
@@ -233,7 +286,7 @@ static void test_effects_follow_from_keys_and_name_them(void **unused)
         "grains = (\n"
         "    { radius = 0.5; restitution = 1; friction = 0.25; }\n"
         "); placements = ( { count = 20; } );", NULL);
-    CHECK(scene->effects == (EFFECT_FRICTION | EFFECT_ROTATION | EFFECT_DISSIPATION | EFFECT_WALLS
+    CHECK(scene->effects == (EFFECT_FRICTION | EFFECT_DISSIPATION | EFFECT_WALLS
                              | EFFECT_OUTFLOW));
     CHECK(explains(scene, EFFECT_FRICTION, true, "grains.[0].friction = 0.25 (effects.cfg:3)"));
     CHECK(explains(scene, EFFECT_OUTFLOW, true, "effects.cfg:1"));
@@ -287,8 +340,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_written_scene_loads_as_the_same_scene),
         cmocka_unit_test(test_every_builtin_scene_loads_in_both_forms_and_survives_the_round_trip),
+        cmocka_unit_test(test_the_example_of_the_guide_is_a_scene),
         cmocka_unit_test(test_one_override_sets_the_number_of_grains_in_the_hourglass),
         cmocka_unit_test(test_phases_accumulate_and_share_the_grains),
+        cmocka_unit_test(test_what_a_model_chose_for_a_phase_is_written_with_it),
         cmocka_unit_test(test_effects_follow_from_keys_and_name_them),
         cmocka_unit_test(test_walls_come_down_to_joined_pieces),
         cmocka_unit_test(test_mass_inertia_and_units_are_those_of_discs_and_spheres),

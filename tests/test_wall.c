@@ -1,4 +1,5 @@
-/* test_wall.c - distances from walls against brute force; walls that move, shake and open. */
+/* test_wall.c - distances from walls against brute force; walls that move, shake and open.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/rng.h"
 #include "check.h"
 #include "scene/wall.h"
@@ -57,7 +58,8 @@ static void test_the_nearest_point_of_a_wall_is_the_nearest_of_many_samples(void
         const double x = 4 * rng_uniform(&rng) - 1.5, y = 4 * rng_uniform(&rng) - 1.5;
         const struct wall_nearest near = wall_nearest(&wall, x, y);
         const double sampled = sampled_distance(&wall, x, y);
-        const bool inside = wall.shape == WALL_DISC && hypot(x - wall.cx, y - wall.cy) < wall.radius;
+        const bool inside = wall.shape == WALL_DISC && hypot(x - wall.cx,
+                                                             y - wall.cy) < wall.radius;
         /* The samples are at most h = 2 pi 1.1 / 20000 = 3.5e-4 apart; the true distance is no
          * more than h/2 below the sampled one, and never above it. */
         const double distance = inside ? -near.distance : near.distance;
@@ -65,7 +67,8 @@ static void test_the_nearest_point_of_a_wall_is_the_nearest_of_many_samples(void
         CHECK_NEAR(distance, sampled, 2e-4);
         CHECK_NEAR(near.nx * near.nx + near.ny * near.ny, 1, 1e-12);
         /* Going back along the normal leads onto the wall. */
-        CHECK_NEAR(sampled_distance(&wall, x - near.distance * near.nx, y - near.distance * near.ny),
+        CHECK_NEAR(sampled_distance(&wall, x - near.distance * near.nx,
+                                    y - near.distance * near.ny),
                    0, 2e-4);
     }
 }
@@ -128,8 +131,8 @@ static void test_a_wall_moves_only_in_its_time_and_shakes_about_its_place(void *
                                .moves_to = INFINITY};
     CHECK_NEAR(wall_at(&shake, 0.125).cy, 0.5, 1e-15);                  /* a quarter of a period */
     /* The velocity is the slope of the position: central difference, error (2 pi f h)^2 / 6. */
-    const double h = 1e-5, slope = (wall_at(&shake, 0.3 + h).cy - wall_at(&shake, 0.3 - h).cy) / (2 * h);
-    CHECK_NEAR(wall_at(&shake, 0.3).vy, slope, 1e-7);
+    const double h = 1e-5, low = wall_at(&shake, 0.3 - h).cy, high = wall_at(&shake, 0.3 + h).cy;
+    CHECK_NEAR(wall_at(&shake, 0.3).vy, (high - low) / (2 * h), 1e-7);
     CHECK(wall_moves(&slide) && wall_moves(&shake));
     const struct wall still = {.shape = WALL_DISC, .vx = 1, .moves_from = 2, .moves_to = 2};
     CHECK(!wall_moves(&still));
@@ -138,7 +141,8 @@ static void test_a_wall_moves_only_in_its_time_and_shakes_about_its_place(void *
 static void test_a_gate_is_gone_between_its_times(void **unused)
 {
     (void)unused;
-    const struct wall gate = {.opens = 1, .closes = 2}, wall = {.opens = INFINITY, .closes = INFINITY};
+    const struct wall gate = {.opens = 1, .closes = 2}, wall = {.opens = INFINITY,
+                                                                .closes = INFINITY};
     CHECK(wall_present(&gate, 0.99) && !wall_present(&gate, 1) && !wall_present(&gate, 1.99));
     CHECK(wall_present(&gate, 2));
     CHECK(wall_present(&wall, 1e9));

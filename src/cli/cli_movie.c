@@ -1,4 +1,7 @@
-/* cli_movie.c - `movie SCENE|RUN...`: a film, or several side by side. */
+/* cli_movie.c - `movie SCENE|RUN...`: a film, or several side by side.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "run/folder.h"
@@ -45,10 +48,8 @@ static bool open_panel(struct cast *cast, uint32_t p, const struct options *opti
 {
     struct panel *panel = &cast->panels[p];
     struct setup *setup = &cast->setups[p];
-    char index[FILE_PATH_MAX];
     const char *path = cast->paths[p];
-    const bool redraws = setup_is_run(path)
-                      && file_exists(folder_path(index, path, "dump/index.csv"));
+    const bool redraws = footage_has_dumps(path);
     const char *model = *cast->models[p] ? cast->models[p] : NULL;
     if (!opening_load(setup, options, path, model, !redraws, error)) return false;
     struct view view = setup->scene->view;

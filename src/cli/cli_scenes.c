@@ -1,4 +1,7 @@
-/* cli_scenes.c - `scenes`: what is built in, and which model can run it. */
+/* cli_scenes.c - `scenes`: what is built in, and which model can run it.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "base/asset.h"
@@ -76,8 +79,8 @@ int cli_scenes(const struct options *options)
         json_dumpf(list, stdout, JSON_INDENT(4));
         printf("\n");
     } else {
-        printf("\n* its own model, x can run it too, - lacks an effect (`sandreel check SCENE --model "
-               "NAME` says which)\n`sandreel run SCENE --quick` runs the small form of a scene\n");
+        printf("\n* its own model, x can run it too, - lacks an effect (`sandreel check SCENE "
+               "--model NAME` says which)\n`sandreel run SCENE --quick` runs the small form\n");
     }
     json_decref(list);
     return EXIT_DONE;

@@ -1,4 +1,7 @@
-/* folder.c - see folder.h. */
+/* folder.c - see folder.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/folder.h"
 
 #include <dirent.h>
@@ -83,9 +86,17 @@ bool folder_claim(const char *directory, bool force, struct error *error)
             "empty; choose another with -o, go on with --resume, or overwrite it with --force",
             directory);
     }
+    /* Only a former run is cleared away; anywhere else the files are put beside what is there. */
+    char scene[FILE_PATH_MAX], manifest[FILE_PATH_MAX];
+    if (!file_exists(folder_path(scene, directory, "scene.cfg"))
+        || !file_exists(folder_path(manifest, directory, "manifest.json"))) {
+        return true;
+    }
     static const char *const folders[] = {"frames", "maps", "dump", "checkpoint"};
     static const char *const files[] = {"scene.cfg", "manifest.json", "log.csv", "broken.png"};
-    for (size_t k = 0; k < sizeof folders / sizeof *folders; k++) folder_clear(directory, folders[k]);
+    for (size_t k = 0; k < sizeof folders / sizeof *folders; k++) {
+        folder_clear(directory, folders[k]);
+    }
     for (size_t k = 0; k < sizeof files / sizeof *files; k++) folder_remove(directory, files[k]);
     return true;
 }

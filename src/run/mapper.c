@@ -1,4 +1,7 @@
-/* mapper.c - see mapper.h. */
+/* mapper.c - see mapper.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/mapper.h"
 
 #include "measure/csv.h"
@@ -89,7 +92,10 @@ void mapper_close(struct mapper *mapper)
 
 void mapper_clear(struct mapper *mapper) { map_clear(mapper->map); }
 
-void mapper_add(struct mapper *mapper, const struct grains *grains) { map_add(mapper->map, grains); }
+void mapper_add(struct mapper *mapper, const struct grains *grains)
+{
+    map_add(mapper->map, grains);
+}
 
 static bool draw(struct mapper *mapper, const struct field *field, const char *path,
                  struct error *error)

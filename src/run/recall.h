@@ -1,4 +1,7 @@
-/* recall.h - what an earlier run remembers in its manifest.json. */
+/* recall.h - what an earlier run remembers in its manifest.json.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef RECALL_H
 #define RECALL_H
 
@@ -9,8 +12,8 @@
 /* The manifest as JSON, a new reference; NULL with the cause. */
 json_t *recall_manifest(const char *run, struct error *error);
 
-/* If `run` is a run whose grains were coloured as `view` wants it and view->range is open, takes the
- * range of that run. */
+/* If `run` is a run whose grains were coloured as `view` wants it, and view->range is open: takes
+ * the range of that run. */
 void recall_range(const char *run, const struct scene *scene, struct view *view);
 
 #endif

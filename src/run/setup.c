@@ -1,4 +1,7 @@
-/* setup.c - see setup.h. */
+/* setup.c - see setup.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/setup.h"
 
 #include "base/file.h"
@@ -53,7 +56,7 @@ static void resolve(struct setup *setup)
     }
 }
 
-/* A run's scene keeps the name of the scene that it was made from, not that of the file scene.cfg. */
+/* A run's scene keeps the name of the scene it was made from, not that of its file scene.cfg. */
 static void keep_name(struct setup *setup, const char *run)
 {
     struct error ignored;

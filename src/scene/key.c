@@ -1,4 +1,5 @@
-/* key.c - see key.h: words about keys, for findings and help. */
+/* key.c - see key.h: words about keys, for findings and help.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/key.h"
 
 #include <math.h>
@@ -12,7 +13,8 @@ const char *key_type_word(enum key_type type)
         [KEY_WORD64] = "a whole number, 0 or more", [KEY_BOOL] = "true or false",
         [KEY_CHOICE] = "a word", [KEY_TEXT] = "a text", [KEY_VECTOR] = "two numbers (x, y)",
         [KEY_BOX] = "four numbers (x0, y0, x1, y1)",
-        [KEY_RANGE] = "a number or a range (low, high)", [KEY_REALS] = "a list of numbers (a, b, ...)",
+        [KEY_RANGE] = "a number or a range (low, high)",
+        [KEY_REALS] = "a list of numbers (a, b, ...)",
         [KEY_POINTS] = "a list of points ((x, y), (x, y), ...)",
         [KEY_TEXTS] = "a list of texts (\"a\", \"b\", ...)",
     };

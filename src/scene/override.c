@@ -3,13 +3,15 @@
  * The path may pass through groups and lists that are not there yet: a name is added to its
  * group, an index one past the end to its list.  Whether the key is known at all is found when
  * the tree is parsed, with the nearest known key.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "scene/override.h"
 
 #include <stdio.h>
 #include <string.h>
 
-struct override { const char *text, *file; int line; struct findings *findings; struct arena *arena; };
+struct override { const char *text,
+                 *file; int line; struct findings *findings; struct arena *arena; };
 
 static void tell(const struct override *o, const char *why)
 {

@@ -6,6 +6,7 @@
  * are a little too large in this (MARGIN), so once the remaining overlaps are below it, the true
  * discs do not overlap at all.  If they jam, they are shaken again, longer; the number of tries
  * and of steps is bounded.  Unit of length: the mean diameter; mass and stiffness are 1.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "scene/pack.h"
 
@@ -43,7 +44,8 @@ struct packing {
 
 /* ---- lists --------------------------------------------------------------------------------- */
 
-static bool list_add(struct pair **list, uint32_t *count, uint32_t *capacity, uint32_t i, uint32_t j)
+static bool list_add(struct pair **list, uint32_t *count, uint32_t *capacity, uint32_t i,
+                     uint32_t j)
 {
     if (*count == *capacity) {
         const uint32_t larger = *capacity ? 2 * *capacity : 65536;
@@ -135,8 +137,10 @@ static bool list_neighbours(struct packing *p, const struct cells *cells, uint32
 {
     const bool wx = p->wraps_x, wy = p->wraps_y;
     uint32_t columns[3], rows[3];
-    const uint32_t nc = around(cell_index(p->x[i], cells->x0, cells->wx, cells->nx, wx), cells->nx, wx, columns);
-    const uint32_t nr = around(cell_index(p->y[i], cells->y0, cells->wy, cells->ny, wy), cells->ny, wy, rows);
+    const uint32_t nc = around(cell_index(p->x[i], cells->x0, cells->wx, cells->nx, wx), cells->nx,
+                               wx, columns);
+    const uint32_t nr = around(cell_index(p->y[i], cells->y0, cells->wy, cells->ny, wy), cells->ny,
+                               wy, rows);
     for (uint32_t k = 0; k < nr * nc; k++) {
         const uint32_t cell = rows[k / nc] * cells->nx + columns[k % nc];
         for (uint32_t j1 = cells->first[cell]; j1; j1 = cells->next[j1 - 1]) {
@@ -319,7 +323,8 @@ static bool relax(struct packing *p, bool *memory)
             ff += p->fx[i] * p->fx[i] + p->fy[i] * p->fy[i];
             vv += p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i];
         }
-        const double turn = power > 0 && ff > 0 ? mix * sqrt(vv / ff) : 0, keep = power > 0 ? 1 - mix : 0;
+        const double turn = power > 0 && ff > 0 ? mix * sqrt(vv / ff) : 0, keep = power > 0
+            ? 1 - mix : 0;
         for (uint32_t i = 0; i < p->pack->count; i++) {
             p->vx[i] = keep * p->vx[i] + turn * p->fx[i];
             p->vy[i] = keep * p->vy[i] + turn * p->fy[i];

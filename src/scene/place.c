@@ -1,4 +1,4 @@
-/* place.c - see place.h. */
+/* place.c - see place.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/place.h"
 
 #include "base/rng.h"
@@ -19,7 +19,8 @@ enum { STREAM_RADIUS = 0x7261, STREAM_POSITION = 0x706f, STREAM_VELOCITY = 0x766
 void place_bounds(const struct scene *scene, const struct placement *placement, double bounds[4])
 {
     const struct key_reals *outline = &placement->outline;
-    memcpy(bounds, isnan(placement->region[0]) ? scene->box : placement->region, 4 * sizeof *bounds);
+    memcpy(bounds, isnan(placement->region[0]) ? scene->box : placement->region,
+           4 * sizeof *bounds);
     for (uint32_t k = 0; k + 1 < outline->count; k += 2) {
         const double x = outline->values[k], y = outline->values[k + 1];
         bounds[0] = k ? fmin(bounds[0], x) : x;
@@ -228,7 +229,8 @@ static struct lattice lattice_of(const struct region *region, const struct place
 
 /* A site is used if a grain of the largest radius fits there, so that small grains are not
  * favoured along slopes. */
-static bool site_is_free(const struct placer *placer, const struct region *region, double x, double y,
+static bool site_is_free(const struct placer *placer, const struct region *region, double x,
+                         double y,
                          double radius)
 {
     return region_holds(region, x, y, radius) && !meets_wall(placer, x, y, radius)
@@ -254,7 +256,8 @@ static bool place_lattice(struct placer *placer, const struct placement *placeme
             const uint64_t draw = 2 * (uint64_t)done;
             const double r = placement->jitter * gap / 2
                 * sqrt(rng_unit(word_of(placer, STREAM_POSITION, number, draw)));
-            const double phase = 2 * M_PI * rng_unit(word_of(placer, STREAM_POSITION, number, draw + 1));
+            const double phase = 2 * M_PI * rng_unit(word_of(placer, STREAM_POSITION, number,
+                                                             draw + 1));
             const double xs = x + r * cos(phase), ys = y + r * sin(phase);
             if (r > 0 && site_is_free(placer, &region, xs, ys, radius_max)) {
                 x = xs;
@@ -312,7 +315,8 @@ static uint32_t sides_of(const struct region *region, struct wall *sides)
     for (uint32_t k = 0; k < points; k++) {
         const uint32_t n = (k + 1) % points, from = twice > 0 ? k : n, to = twice > 0 ? n : k;
         if (!region->outline && (k % 2 ? region->free_x : region->free_y)) continue;
-        sides[count++] = (struct wall){.shape = WALL_SEGMENT, .x0 = p[2 * from], .y0 = p[2 * from + 1],
+        sides[count++] = (struct wall){.shape = WALL_SEGMENT, .x0 = p[2 * from],
+                                       .y0 = p[2 * from + 1],
                                        .x1 = p[2 * to], .y1 = p[2 * to + 1]};
     }
     return count;
@@ -382,7 +386,8 @@ static enum pack_outcome heap_pack(const struct placer *placer, const struct reg
     struct wall *sides = calloc(corners, sizeof *sides);
     if (!sides) return PACK_MEMORY;
     struct pack pack = {.count = heap->count, .fixed = heap->all - heap->count, .x = heap->x,
-                        .y = heap->y, .radius = heap->radius, .fraction = heap->fraction, .sides = sides,
+                        .y = heap->y, .radius = heap->radius, .fraction = heap->fraction,
+                        .sides = sides,
                         .wall_count = placer->wall_count, .walls = placer->walls,
                         .wraps_x = placer->wraps_x, .wraps_y = placer->wraps_y,
                         .seed = word_of(placer, STREAM_POSITION, number, 1)};
@@ -393,7 +398,8 @@ static enum pack_outcome heap_pack(const struct placer *placer, const struct reg
     return outcome;
 }
 
-static void tell_jam(const struct placer *placer, const struct placement *placement, uint32_t number,
+static void tell_jam(const struct placer *placer, const struct placement *placement,
+                     uint32_t number,
                      double asked, double reached, uint32_t count)
 {
     char key[64];
@@ -442,7 +448,8 @@ static bool place_random(struct placer *placer, const struct placement *placemen
         }
     }
     if (outcome == PACK_JAMMED) {
-        tell_jam(placer, placement, number, filled / area, filled / area * scale * scale, heap.count);
+        tell_jam(placer, placement, number, filled / area, filled / area * scale * scale,
+                 heap.count);
     }
     bool done = outcome != PACK_MEMORY;
     for (uint32_t k = 0; k < heap.count && outcome == PACK_DONE && done; k++) {
@@ -515,10 +522,12 @@ static void tell_missing(const struct placer *placer, const struct placement *pl
     if (placed > 0 && placed >= placement->count) return;
     snprintf(key, sizeof key, "placements.[%u]%s", number, placement->count ? ".count" : "");
     if (placed == 0) {
-        findings_tell(placer->findings, placer->scene, FINDING_ERROR, key, "placements.[%u]: no grain "
+        findings_tell(placer->findings, placer->scene, FINDING_ERROR, key,
+                      "placements.[%u]: no grain "
                       "fits: the region is too small, or walls or other grains fill it", number);
     } else {
-        findings_tell(placer->findings, placer->scene, FINDING_ERROR, key, "placements.[%u]: only %u "
+        findings_tell(placer->findings, placer->scene, FINDING_ERROR, key,
+                      "placements.[%u]: only %u "
                       "of %u grains fit clear of walls and other grains; ask for at most %u or "
                       "enlarge the region", number, placed, placement->count, placed);
     }
@@ -554,10 +563,12 @@ bool place_grains(struct scene *scene, struct findings *findings)
                                                    : place_lattice(&placer, placement, k, species);
         if (!done) break;
         set_velocities(&placer, placement, k, from);
-        if (findings->errors == errors) tell_missing(&placer, placement, k, placer.grains.count - from);
+        if (findings->errors == errors) tell_missing(&placer, placement, k,
+                                                     placer.grains.count - from);
     }
     done = done && keep_grains(&placer);
-    if (!done) findings_tell(findings, scene, FINDING_ERROR, "placements", "not enough memory for the "
+    if (!done) findings_tell(findings, scene, FINDING_ERROR, "placements",
+                             "not enough memory for the "
                              "grains");
     struct placed *g = &placer.grains;
     double *const arrays[] = {g->x, g->y, g->vx, g->vy, g->spin, g->radius};

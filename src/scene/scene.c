@@ -3,6 +3,7 @@
  * Read the text into a tree, lay quick_set and the overrides over it, parse the tree through the
  * key tables, derive what follows, check, place.  A phase is the same text read once more with
  * the overrides of the phases up to it; it shares the placed grains of the whole scene.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "scene/scene.h"
 
@@ -94,7 +95,8 @@ static bool read_text(struct source_text *source, const struct scene_request *re
             char close[64];
             const char *nearest = nearest_builtin(path, close);
             findings_tell_at(findings, FINDING_ERROR, path, 0, "there is no built-in scene of this "
-                "name%s%s%s; 'sandreel scenes' lists them, and a file is named with its ending .cfg",
+                "name%s%s%s; 'sandreel scenes' lists them, and a file is named with its ending "
+                ".cfg",
                 nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
             return false;
         }
@@ -104,7 +106,8 @@ static bool read_text(struct source_text *source, const struct scene_request *re
     source->owned = file_load(path, TEXT_SIZE_MAX, &size, &error);
     source->text = source->owned;
     if (!source->owned) {
-        const char *why = strncmp(error.text, path, strlen(path)) == 0 ? error.text + strlen(path) + 2
+        const char *why = strncmp(error.text, path, strlen(path)) == 0
+            ? error.text + strlen(path) + 2
                                                                        : error.text;
         findings_tell_at(findings, FINDING_ERROR, path, 0, "%s", why);
         return false;
@@ -137,7 +140,8 @@ static void apply_request(struct scene *scene, const struct scene_request *reque
                           struct findings *findings)
 {
     for (uint32_t k = 0; k < request->override_count; k++) {
-        override_apply(scene->places->root, &scene->arena, request->overrides[k], "-s", 0, findings);
+        override_apply(scene->places->root, &scene->arena, request->overrides[k], "-s", 0,
+                       findings);
     }
 }
 
@@ -165,7 +169,8 @@ static bool build_tree(struct scene *scene, const struct scene_request *request,
     const struct tree *phases = tree_member(places->root, "phases");
     for (uint32_t k = 0; phases && k < phase; k++) {
         const struct tree *entry = phases->kind == TREE_LIST ? tree_entry(phases, k) : phases;
-        if (entry) apply_texts(scene, tree_member(entry, "set"), k + 1 == phase ? findings : &quiet);
+        if (entry) apply_texts(scene, tree_member(entry, "set"), k + 1 == phase ? findings
+                               : &quiet);
     }
     return true;
 }
@@ -204,7 +209,7 @@ static struct scene *scene_build(const struct scene_request *request,
         scene_free(scene);
         return NULL;
     }
-    if (scene->quick) scene->quick_set.count = 0;       /* it is applied; the keys hold the values */
+    if (scene->quick) scene->quick_set.count = 0;       /* applied: the keys hold the values */
     if (!isfinite(scene->view.window[0])) {
         for (int k = 0; k < 4; k++) scene->view.window[k] = NAN;
     }

@@ -2,6 +2,8 @@
  *
  * A case sets up what it needs, measures the rest, and tells one number; the caller repeats it and
  * takes the median.  Times are processor seconds of all threads, so a busy machine disturbs less.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef BENCH_H
 #define BENCH_H
@@ -21,8 +23,8 @@ struct bench_case {
     bool larger_is_better;
     bool (*measure)(const struct bench_case *which, struct bench_result *result,
                     struct error *error);
-    const char *text;           /* what the measuring function needs: a scene ... */
-    const char *model;
+    const char *scene, *text;   /* what the measuring function needs: a scene, built in or text, */
+    const char *set, *model;    /* with an override (NULL: none) and a model ... */
     double amount;              /* ... simulated time, a number of grains */
     bool per_grain;             /* work is steps times grains */
 };
