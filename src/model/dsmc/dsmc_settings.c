@@ -181,10 +181,26 @@ static void fill_restitution(struct scene *scene, struct findings *findings)
     }
 }
 
+/* One time step for all phases, the shortest that any of them asks for. */
+static void share_step(struct scene *scene)
+{
+    double dt = INFINITY;
+    for (uint32_t p = 0; p < scene->phase_count; p++) {
+        dt = fmin(dt, dsmc_settings_completed(scene->phases[p]).dt);
+    }
+    for (uint32_t p = 1; p < scene->phase_count; p++) {
+        struct dsmc_settings *settings = scene_settings(scene->phases[p], "dsmc");
+        if (settings && isnan(settings->dt)) settings->dt = dt;
+    }
+    struct dsmc_settings *settings = scene_settings(scene, "dsmc");
+    if (isnan(settings->dt)) settings->dt = dt;
+}
+
 void dsmc_settings_resolve(struct scene *scene, struct findings *findings)
 {
     struct dsmc_settings *settings = scene_settings(scene, "dsmc");
     if (!settings || scene->species_count == 0) return;
+    if (scene->phase_count > 1) share_step(scene);
     const struct dsmc_settings s = dsmc_settings_completed(scene);
     settings->speed = s.speed;
     if (scene->placed.count > 0 || scene->source_count > 0) {   /* else the density is not known */
