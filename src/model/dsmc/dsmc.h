@@ -108,6 +108,7 @@ struct dsmc {
 
     uint32_t full;              /* hsmc: grains that fill a cell; 0: no limit */
     uint16_t *load;             /* hsmc: grains in each cell while they move */
+    bool     unsorted;          /* hsmc: some grain has changed its cell in this step */
 
     struct source_cursor *cursors;
     struct source_grain *batch;

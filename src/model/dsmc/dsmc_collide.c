@@ -26,13 +26,14 @@ enum {
     PER_GRAIN_MAX = 64          /* candidates a grain and step; in a collapse there is no limit */
 };
 
-static enum dsmc_acceptance acceptance;
+static float printed_speed;     /* for tests: as printed, with this v; 0: as it should be */
 
-void dsmc_collide_accept(enum dsmc_acceptance rule) { acceptance = rule; }
+void dsmc_collide_as_printed(float speed) { printed_speed = speed; }
 
 struct block {
     struct dsmc *dsmc;
     struct dsmc_words words;
+    uint32_t number;
     uint32_t row, x0, x1;       /* cells x0 .. x1 - 1 of that row */
     uint32_t cell;              /* number of the first */
     float    factor[DSMC_BLOCK];        /* chi, pair factor and 1 / volume of each cell */
@@ -142,6 +143,21 @@ FORCE_INLINE float speed_bound2(const struct dsmc_grain *grains, uint32_t n)
     return bound2 > 0 ? bound2 * 1.00001f : 0;
 }
 
+/* The bound of each cell; false if nothing moves against anything here. */
+FORCE_INLINE bool find_bounds(struct block *block)
+{
+    const struct dsmc *dsmc = block->dsmc;
+    const uint32_t *first = &dsmc->first[block->cell];
+    bool any = false;
+    for (uint32_t k = 0; k < block->x1 - block->x0; k++) {
+        const uint32_t n = first[k + 1] - first[k];
+        block->bound2[k] = n < 2 ? 0 : speed_bound2(&dsmc->grains[first[k]], n);
+        if (__builtin_expect(printed_speed > 0, 0)) block->bound2[k] = printed_speed * printed_speed;
+        any = any || block->bound2[k] > 0;
+    }
+    return any;
+}
+
 FORCE_INLINE void find_pairs(struct block *block)
 {
     const struct dsmc *dsmc = block->dsmc;
@@ -152,11 +168,9 @@ FORCE_INLINE void find_pairs(struct block *block)
         const uint32_t n = first[k + 1] - first[k];
         block->pairs[k] = 0;
         if (n < 2) continue;
-        const float bound2 = speed_bound2(&dsmc->grains[first[k]], n);
         const float all = (float)n * (float)(n - 1);
-        const float mean = dsmc->rate * all * block->factor[k] * sqrtf(bound2);
+        const float mean = dsmc->rate * all * block->factor[k] * sqrtf(block->bound2[k]);
         const float most = (float)PER_GRAIN_MAX * (float)n;
-        block->bound2[k] = bound2;
         block->pairs[k] = (uint32_t)((mean < most ? mean : most) + dsmc_words_unit(chance[k]));
     }
 }
@@ -248,7 +262,7 @@ FORCE_INLINE void collide_pair(struct block *block, uint32_t i, uint32_t j, floa
 /* Does the candidate collide?  g / v > U, without the root. */
 FORCE_INLINE bool accepted(float g2, float bound2, float u)
 {
-    if (__builtin_expect(acceptance == DSMC_AS_PRINTED, 0)) return g2 < u * u * bound2;
+    if (__builtin_expect(printed_speed > 0, 0)) return g2 < u * u * bound2;
     return g2 > u * u * bound2;
 }
 
@@ -289,8 +303,10 @@ FORCE_INLINE void collide_cells(struct block *block, unsigned flags)
 
 FORCE_INLINE void collide_block(struct block *block, unsigned flags)
 {
+    if (!find_bounds(block)) return;
     if (flags & LOCAL) find_local_factors(block);
     else find_global_factors(block);
+    block->words = dsmc_words_begin(block->dsmc->seed, block->dsmc->steps, block->number);
     find_pairs(block);
     collide_cells(block, flags);
     if (flags & ROUGH) block->tangential = block->collisions;
@@ -332,11 +348,11 @@ void dsmc_collide(struct dsmc *dsmc, uint32_t number, struct dsmc_sums *sums)
                          | (dsmc->spins ? ROUGH : 0);
     struct block block;
     block.dsmc = dsmc;
+    block.number = number;
     block.cell = dsmc_collide_cell(dsmc, number);
     block.row = block.cell / dsmc->ax.cells;
     block.x0 = block.cell % dsmc->ax.cells;
     block.x1 = block.x0 + DSMC_BLOCK < dsmc->ax.cells ? block.x0 + DSMC_BLOCK : dsmc->ax.cells;
-    block.words = dsmc_words_begin(dsmc->seed, dsmc->steps, number);
     block.collisions = block.rejected = block.tangential = 0;
     loops[flags](&block);
     sums->collisions += block.collisions;

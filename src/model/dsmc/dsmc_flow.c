@@ -18,6 +18,7 @@ bool dsmc_flow_add(struct dsmc *dsmc, double x, double y, double vx, double vy, 
 {
     if (dsmc->count == dsmc->count_max) return false;
     const uint32_t i = dsmc->count++;
+    dsmc->unsorted = true;
     dsmc->grains[i] = (struct dsmc_grain){
         .x = (float)(x - dsmc->scene->box[0]), .y = (float)(y - dsmc->scene->box[1]),
         .vx = (float)vx, .vy = (float)vy};
@@ -87,6 +88,7 @@ static void let_out(struct dsmc *dsmc, double t)
         if (dsmc->contacts) dsmc->contacts[kept] = dsmc->contacts[i];
         kept++;
     }
+    dsmc->unsorted = dsmc->unsorted || kept < dsmc->count;
     dsmc->count = kept;
 }
 

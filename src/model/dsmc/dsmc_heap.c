@@ -27,6 +27,7 @@ struct sweep {
     float gx, gy, dt, way_max, slow2, roll;
     int   down;                 /* row step along gravity, 0: none */
     uint32_t nx, ny;
+    uint64_t key;               /* of the random numbers of this step */
 };
 
 /* Is the cell one step along (dx, dy) full?  What lies outside of the grid is full where a wall
@@ -49,6 +50,15 @@ static bool is_full(const struct sweep *sweep, uint32_t cell, int dx, int dy)
         y = (y + ny) % ny;
     }
     return dsmc->load[y * nx + x] >= dsmc->full;
+}
+
+/* Is the cell below full?  The common case without a division. */
+static bool lies_on_full(const struct sweep *sweep, uint32_t cell)
+{
+    if (sweep->down < 0 && cell >= sweep->nx) {
+        return sweep->dsmc->load[cell - sweep->nx] >= sweep->dsmc->full;
+    }
+    return is_full(sweep, cell, 0, sweep->down);
 }
 
 /* Columns within which this grain rolls. */
@@ -77,6 +87,7 @@ static void change_cell(struct dsmc *dsmc, uint32_t from, uint32_t to)
 {
     dsmc->load[from]--;
     dsmc->load[to]++;
+    dsmc->unsorted = true;
 }
 
 static uint32_t cell_at(const struct dsmc *dsmc, float x, float y)
@@ -127,14 +138,14 @@ static float bump(struct sweep *sweep, uint32_t i, uint32_t cell, uint32_t to, s
 }
 
 /* A refused grain: it stays where it was. */
-static void refuse(struct sweep *sweep, uint32_t i, uint32_t cell, uint32_t to, uint64_t key)
+static void refuse(struct sweep *sweep, uint32_t i, uint32_t cell, uint32_t to)
 {
     struct dsmc *dsmc = sweep->dsmc;
-    struct rng rng = {key};
+    struct rng rng = rng_stream(sweep->key, i, 0);
     const float u2 = bump(sweep, i, cell, to, &rng);
     dsmc->rejected++;
     if (sweep->down == 0 || u2 > sweep->slow2) return;
-    if (!is_full(sweep, cell, 0, sweep->down)) return;
+    if (!lies_on_full(sweep, cell)) return;
     struct dsmc_grain *p = &dsmc->grains[i];
     const int side = roll_side(sweep, i, cell, rng_u64(&rng));
     if (side == 0) {
@@ -154,12 +165,12 @@ static bool rests(struct sweep *sweep, uint32_t i, uint32_t cell)
     if (!(tag & DSMC_RESTS)) return false;
     const bool carried = tag & DSMC_PLATE
         ? !dsmc->walls.vary || dsmc_walls_carries(dsmc, &dsmc->grains[i])
-        : is_full(sweep, cell, 0, sweep->down);
+        : lies_on_full(sweep, cell);
     if (!carried) dsmc->tags[i] = tag & DSMC_NAME;
     return carried;
 }
 
-static void move_grain(struct sweep *sweep, uint32_t i, uint64_t key)
+static void move_grain(struct sweep *sweep, uint32_t i)
 {
     struct dsmc *dsmc = sweep->dsmc;
     struct dsmc_grain *p = &dsmc->grains[i];
@@ -196,7 +207,7 @@ static void move_grain(struct sweep *sweep, uint32_t i, uint64_t key)
         } else {
             p->x = before.x;
             p->y = before.y;
-            refuse(sweep, i, cell, to, key);
+            refuse(sweep, i, cell, to);
             return;
         }
     }
@@ -224,8 +235,9 @@ void dsmc_heap_sweep(struct dsmc *dsmc)
     if (n == 0) return;
     uint32_t i = (uint32_t)(rng_uniform(&rng) * n);
     const bool upwards = rng_u64(&rng) & 1;
+    sweep.key = rng.state;
     for (uint32_t k = 0; k < n; k++) {
-        move_grain(&sweep, i, rng_keyed(rng.state, i, 0, 0));
+        move_grain(&sweep, i);
         if (upwards) i = i + 1 == n ? 0 : i + 1;
         else i = i == 0 ? n - 1 : i - 1;
     }

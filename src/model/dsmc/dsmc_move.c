@@ -326,6 +326,7 @@ static void do_share(struct dsmc *dsmc, const struct flight *flight, uint32_t *s
 #pragma omp master
     do_alone(dsmc);
 #pragma omp barrier
+    if (dsmc->full && !dsmc->unsorted) return;          /* a heap at rest keeps its order */
     if (waits) {
         first = (uint32_t)((uint64_t)dsmc->count * t / team);
         last = (uint32_t)((uint64_t)dsmc->count * (t + 1) / team);
@@ -344,7 +345,8 @@ void dsmc_move_step(struct dsmc *dsmc)
     memset(dsmc->sums, 0, dsmc->threads * sizeof *dsmc->sums);
 #pragma omp parallel num_threads((int)dsmc->threads) if (dsmc->count >= PARALLEL_MIN)
     do_share(dsmc, &flight, starts);
-    finish_sort(dsmc);
+    if (!dsmc->full || dsmc->unsorted) finish_sort(dsmc);
+    dsmc->unsorted = false;
     for (uint32_t t = 0; t < dsmc->threads; t++) {
         dsmc->collisions += dsmc->sums[t].collisions;
         dsmc->rejected += dsmc->sums[t].rejected;
