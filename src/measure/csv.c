@@ -84,7 +84,7 @@ bool csv_save_grains(const char *path, const struct grains *grains, const struct
 
 static bool print_peak(FILE *stream, const struct scatter *scatter, struct error *error)
 {
-    const double reach = 15;            /* of the parabola, degrees: the peak is about 60 wide */
+    const double reach = 6;     /* of the parabola, degrees: the peak is skew, a wide one leans */
     struct scatter folded;
     if (!scatter_fold(scatter, &folded, error)) return false;
     const struct scatter_peak peak = scatter_peak(&folded, reach);
