@@ -6,7 +6,7 @@
  * wider skin.
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#include "bench_md.h"
+#include "bench/bench_md.h"
 
 #include "base/clock.h"
 #include "model/simulation.h"

@@ -1,6 +1,6 @@
 /* draw.c - prints what frames cost (bench_draw.h): ./draw [REPEATS]
  * SPDX-License-Identifier: GPL-3.0-or-later */
-#include "bench_draw.h"
+#include "bench/bench_draw.h"
 
 #include <stdio.h>
 #include <stdlib.h>

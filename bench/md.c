@@ -1,7 +1,7 @@
 /* md.c - prints how fast soft discs are (bench_md.h): ./bench_md [STEPS [TILES [DATA-FILE]]]
  * DATA-FILE: also writes the settled tile for LAMMPS.
  * SPDX-License-Identifier: GPL-3.0-or-later */
-#include "bench_md.h"
+#include "bench/bench_md.h"
 
 #include <stdio.h>
 #include <stdlib.h>

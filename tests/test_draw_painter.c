@@ -77,7 +77,13 @@ static bool same(const struct image *a, const struct image *b, int tolerance)
     return comparable && differing == 0;
 }
 
-struct look { const char *name; uint32_t count; double radius; bool rims, shade; int theme, color; };
+struct look {
+    const char *name;
+    uint32_t count;
+    double radius;
+    bool rims, shade;
+    int theme, color;
+};
 
 /* 20 pixels a length. */
 static const struct look looks[] = {

@@ -15,7 +15,8 @@ static struct outcome measure(double radius, double density, bool flat, double r
         snprintf(obstacle, sizeof obstacle, "{ shape = \"row\"; radius = 0.08; center = (0.0, 0.0);"
                  " from = (0.0, %g); to = (0.0, %g); }", -radius + 0.08, radius - 0.08);
     } else {
-        snprintf(obstacle, sizeof obstacle, "{ shape = \"disc\"; center = (0.0, 0.0); radius = %g; }",
+        snprintf(obstacle, sizeof obstacle, "{ shape = \"disc\"; center = (0.0, 0.0); "
+                                            "radius = %g; }",
                  radius);
     }
     const double column = 0.22 / sqrt(density) / 500, start = 0.1 / sqrt(density);

@@ -5,7 +5,7 @@
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "base/file.h"
-#include "run/bench.h"
+#include "bench/bench.h"
 #include "run/build.h"
 
 #include <jansson.h>

@@ -140,7 +140,8 @@ bool overlay_arrows_key(const struct picture *picture, const struct transform *t
     return found;
 }
 
-struct sample { double speed, pixels, width; };    /* the arrow in the legend; width of all arrows */
+/* The arrow in the legend; width of all arrows. */
+struct sample { double speed, pixels, width; };
 
 /* All arrows in one colour, or the lines beneath them; those too short to point anywhere are left
  * out, and those that are mostly head need no line. */

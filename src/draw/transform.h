@@ -8,7 +8,14 @@ struct transform {
     double x0, y1;              /* the scene's point at the picture's upper left corner */
 };
 
-static inline double transform_x(const struct transform *t, double x) { return (x - t->x0) * t->scale; }
-static inline double transform_y(const struct transform *t, double y) { return (t->y1 - y) * t->scale; }
+static inline double transform_x(const struct transform *t, double x)
+{
+    return (x - t->x0) * t->scale;
+}
+
+static inline double transform_y(const struct transform *t, double y)
+{
+    return (t->y1 - y) * t->scale;
+}
 
 #endif

@@ -2,10 +2,11 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#include "run/bench.h"
+#include "bench/bench.h"
 
 #include "base/clock.h"
 #include "base/rng.h"
+#include "bench/bench_md.h"
 #include "draw/painter.h"
 #include "measure/map.h"
 #include "model/simulation.h"
@@ -53,6 +54,26 @@ static bool measure_model(const struct bench_case *which, struct bench_result *r
     if (sim.state) simulation_destroy(&sim);
     setup_free(&setup);
     return done;
+}
+
+/* The settled bed of frictional discs that other DEM codes are measured on (bench_md.h); the tile is
+ * settled once for all cases.  `amount` is the number of threads, `per_grain` means friction. */
+static bool measure_bed(const struct bench_case *which, struct bench_result *result,
+                        struct error *error)
+{
+    static struct grains tile;
+    static bool settled;
+    const struct bench_md_case bed = {.tiles = 10, .steps = 100, .repeats = 1,
+                                      .friction = which->per_grain};
+    struct bench_md_result measured;
+    if (!settled && !bench_md_settle(&tile, error)) return false;
+    settled = true;
+    const double cpu = clock_process(), wall = clock_wall();
+    if (!bench_md(&bed, &tile, &measured, error)) return false;
+    stop(result, cpu, wall);
+    const int threads = (int)which->amount;
+    result->value = threads == 1 ? measured.per_core[1] : measured.particle_steps[threads];
+    return true;
 }
 
 static const char square_scene[] =
@@ -175,6 +196,12 @@ static const char gas_scene[] =
     "placements = ({ kind = \"random\"; count = 20000; temperature = 1.0; });\n";
 
 const struct bench_case bench_list[] = {
+    {"md-bed", "100,000 settled discs, tangential springs, one thread", "particle-steps/cpu-s",
+     true, measure_bed, .amount = 1, .per_grain = true},
+    {"md-bed-2", "the same on two threads, by the wall clock", "particle-steps/s", true,
+     measure_bed, .amount = 2, .per_grain = true},
+    {"md-bed-smooth", "the same discs without friction, one thread", "particle-steps/cpu-s", true,
+     measure_bed, .amount = 1},
     {"md-gas", "20,000 dissipative discs, area fraction 0.2, periodic", "particle-steps/cpu-s",
      true, measure_model, .scene = "md-gas", .text = gas_scene, .model = "md", .amount = 0.05,
      .per_grain = true},
