@@ -1,0 +1,3 @@
+/* ed_kernel_portable.c - the loop over events for any processor; see ed_kernel.h. */
+#define KERNEL_SET ed_kernel_portable
+#include "model/ed/ed_kernel.h"
