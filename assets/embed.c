@@ -24,6 +24,11 @@ int main(int argc, char **argv)
     if (!out) { perror(argv[1]); return 1; }
     fprintf(out, "#include \"base/asset.h\"\n");
     const size_t root = strlen(argv[2]) + 1;
+    for (int k = 3; k < argc; k++) {
+        if (strncmp(argv[k], argv[2], root - 1) == 0) continue;
+        fprintf(stderr, "embed: %s does not lie below %s\n", argv[k], argv[2]);
+        return 1;
+    }
     for (int k = 3; k < argc; k++) if (embed_one(out, argv[k], k) != 0) return 1;
     fprintf(out, "const struct asset asset_list[] = {\n");
     for (int k = 3; k < argc; k++) {

@@ -20,7 +20,8 @@ enum { IMAGE_SIDE_MAX = 16384 };
 bool image_create(struct image *image, uint32_t width, uint32_t height, struct error *error);
 void image_free(struct image *image);
 
-/* Encodes as PNG: RGB when every pixel is opaque, else RGBA; no filter; zlib `level` 0..9.
+/* Encodes as PNG: RGB when every pixel is opaque, else RGBA; zlib `level` 0..9, of which 1 is the
+ * fast one for films (image.c tells what was measured).
  * *bytes is malloc'ed, the caller frees.  Safe to call from several threads at once. */
 bool image_encode(const struct image *image, int level, const struct image_note *notes,
                   uint32_t note_count, uint8_t **bytes, size_t *size, struct error *error);

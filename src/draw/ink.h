@@ -31,6 +31,9 @@ void ink_arc(struct ink *ink, double cx, double cy, double radius, double angle0
 void ink_disc(struct ink *ink, double cx, double cy, double radius, struct ink_color color);
 void ink_rectangle(struct ink *ink, double x0, double y0, double x1, double y1,
                    struct ink_color color);
+/* The same with rounded corners. */
+void ink_plate(struct ink *ink, double x0, double y0, double x1, double y1, double rounding,
+               struct ink_color color);
 void ink_triangle(struct ink *ink, const double x[3], const double y[3], struct ink_color color);
 void ink_arrow(struct ink *ink, double x0, double y0, double x1, double y1, double width,
                struct ink_color color);

@@ -42,8 +42,19 @@ void painter_destroy(struct painter *painter);
 bool painter_frame(struct painter *painter, const struct picture *picture, struct image *image,
                    struct error *error);
 
-/* What a grain is coloured by (view->color) as one number, and what to call it. */
+/* What a grain is coloured by (view->color) as one number, and what to call it.  Spin has a sign;
+ * pressure is the sum of the sizes of its contact forces over its perimeter, and needs contacts:
+ * for all grains at once painter_value_all() looks at every contact only once. */
 double painter_value(const struct view *view, const struct grains *grains, uint32_t i);
+void painter_value_all(const struct view *view, const struct grains *grains, float *values);
+
+/* The range of colours that suits these values: from 0 to their 99th percentile; of spin
+ * symmetric about 0; of radii from the least to the largest; of species 0 to the last. */
+void painter_value_range(const struct view *view, const struct grains *grains,
+                         const float *values, double range[2]);
+
+/* Red, green, blue of a species; eight colours that also the colour-blind tell apart, repeated. */
+const uint8_t *painter_species_color(uint32_t species);
 const char *painter_value_name(const struct view *view);        /* "speed" */
 const char *painter_value_dimension(const struct view *view);   /* "speed", "1/time", ... */
 

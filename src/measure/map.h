@@ -8,6 +8,7 @@
 #ifndef MAP_H
 #define MAP_H
 
+#include "base/archive.h"
 #include "model/field.h"
 #include "model/grains.h"
 #include "scene/scene.h"
@@ -40,6 +41,9 @@ void map_destroy(struct map *map);
 
 void map_clear(struct map *map);
 void map_add(struct map *map, const struct grains *grains);     /* one snapshot more */
+
+/* What was added so far, for a run that is interrupted within an average. */
+void map_archive(struct map *map, struct archive *archive);
 
 /* The field of one kind from all that was added.  `field` is created here, the caller frees. */
 bool map_field(const struct map *map, enum map_kind kind, struct field *field,

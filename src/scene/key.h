@@ -8,6 +8,8 @@
 #ifndef KEY_H
 #define KEY_H
 
+#include <float.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -38,8 +40,9 @@ struct key {
     const char   *fallback;     /* the default as it would be written; NULL: must be given;
                                  * "nan" (real) marks "chosen when absent"; "" for empty lists */
     double        low, high;    /* limits of every number in it, both allowed; NAN: none */
+                                /* low = KEY_POSITIVE: greater than zero */
     const char   *unit;         /* "length", "time", "speed", "1", ... for help */
-    const char   *choices;      /* KEY_CHOICE: the words, joined by '|'; NULL otherwise */
+    const char   *choices;      /* KEY_CHOICE, KEY_TEXT: the words, joined by '|'; NULL: any */
     const char   *doc;          /* one sentence */
 };
 
@@ -50,5 +53,25 @@ struct key_group {
     uint32_t          count;
     size_t            size;     /* sizeof the struct */
 };
+
+#define KEY_POSITIVE DBL_MIN
+
+/* "a number", "two numbers (x, y)", ...: how a value of this type is written. */
+const char *key_type_word(enum key_type type);
+
+/* "greater than 0", "0 to 1", "one of white, dark": what is allowed; "" if everything is. */
+char *key_limits(const struct key *key, char *text, size_t size);
+
+/* The index of `word` in "a|b|c"; -1 if it is not there. */
+int key_choice(const char *choices, const char *word);
+
+/* Copies choice number `index` of "a|b|c". */
+char *key_choice_word(const char *choices, int index, char *text, size_t size);
+
+const struct key *key_find(const struct key_group *group, const char *name);    /* NULL: none */
+
+/* Insertions, deletions, replacements and swaps of neighbours that turn one word into the other:
+ * how the nearest known key is found. */
+uint32_t key_distance(const char *a, const char *b);
 
 #endif

@@ -196,7 +196,7 @@ struct scene {
     struct placed placed;
     double radius_min, radius_max, radius_mean;         /* over all species that occur */
     uint32_t phase_count;       /* >= 1; phase 0 is this scene at time 0 */
-    const struct scene **phases;        /* the scene in force in each phase */
+    struct scene **phases;      /* the scene in force in each phase; phases[0] is this one */
     const double *phase_times;  /* when each begins; phase_times[0] = 0 */
 
     uint32_t settings_count;    /* of models, in the order of `groups` given to scene_load */
@@ -242,6 +242,13 @@ double scene_inertia(const struct species *species, double radius);
 /* "cm", "s", "g", "d" ... of a dimension "length", "time", "speed", "mass", "force", "energy",
  * "1/time", ...; "" in reduced units. */
 const char *scene_unit(const struct scene *scene, const char *dimension);
+
+/* Why an effect is on or off: for `check --explain`. */
+struct scene_reason { effects_t effect; bool on; char why[240]; };
+
+/* The reason of effect number `index` (0 .. EFFECT_COUNT - 1); false past the last.  An effect that
+ * a model's resolve() switched on is told as such. */
+bool scene_explain(const struct scene *scene, uint32_t index, struct scene_reason *reason);
 
 /* Every group and key there is, for help: the scene's own groups first.  NULL past the last. */
 const struct key_group *scene_key_group(uint32_t index);

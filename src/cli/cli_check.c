@@ -1,0 +1,94 @@
+/* cli_check.c - `check SCENE`: everything that is wrong with it, and what it amounts to. */
+#include "cli/cli.h"
+#include "cli/opening.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static void tell_settings(const struct scene *scene, const struct model *model)
+{
+    const struct key_group *group = model->settings;
+    const void *settings = group ? scene_settings(scene, group->name) : NULL;
+    if (!settings) return;
+    printf("settings of %s:", model->name);
+    for (uint32_t k = 0; k < group->count; k++) {
+        const struct key *key = &group->keys[k];
+        const void *at = (const char *)settings + key->offset;
+        char word[64];
+        if (key->type == KEY_REAL && isfinite(*(const double *)at)) {
+            const char *unit = scene_unit(scene, key->unit);
+            printf(" %s = %.6g%s%s;", key->name, *(const double *)at, *unit ? " " : "", unit);
+        } else if (key->type == KEY_CHOICE) {
+            printf(" %s = %s;", key->name, key_choice_word(key->choices, *(const int *)at, word,
+                                                           sizeof word));
+        } else if (key->type == KEY_BOOL) {
+            printf(" %s = %s;", key->name, *(const bool *)at ? "true" : "false");
+        } else if (key->type == KEY_COUNT) {
+            printf(" %s = %u;", key->name, *(const uint32_t *)at);
+        }
+    }
+    printf("\n");
+}
+
+static double area_fraction(const struct scene *scene)
+{
+    double area = 0;
+    for (uint32_t i = 0; i < scene->placed.count; i++) {
+        area += M_PI * scene->placed.radius[i] * scene->placed.radius[i];
+    }
+    return area / ((scene->box[2] - scene->box[0]) * (scene->box[3] - scene->box[1]));
+}
+
+static void tell_summary(const struct setup *setup)
+{
+    const struct scene *scene = setup->scene;
+    char text[400];
+    printf("%s%s%s\n", scene->name, *scene->title ? ": " : "", scene->title);
+    printf("grains: %u at the start, at most %u; area fraction of the box %.3g\n",
+           scene->placed.count, scene->count_max, area_fraction(scene));
+    printf("radii: %.4g to %.4g, mean %.4g %s\n", scene->radius_min, scene->radius_max,
+           scene->radius_mean, scene_unit(scene, "length"));
+    printf("box: %.6g x %.6g %s, %u walls, %u obstacles, %u phases; until t = %.6g %s\n",
+           scene->box[2] - scene->box[0], scene->box[3] - scene->box[1],
+           scene_unit(scene, "length"), scene->wall_count, scene->obstacle_count,
+           scene->phase_count, scene->until, scene_unit(scene, "time"));
+    effect_words(scene->effects, text, sizeof text);
+    printf("effects: %s\n", text);
+    effects_t all = 0;
+    for (uint32_t p = 0; p < scene->phase_count; p++) all |= scene->phases[p]->effects;
+    model_names(all, text, sizeof text);
+    printf("model: %s (%s); models that can run it: %s\n", setup->model->name,
+           setup->model->summary, text);
+    tell_settings(scene, setup->model);
+    if (!setup->model->memory) return;
+    printf("memory of the model: %s\n", opening_bytes((double)setup->model->memory(scene), text,
+                                                      sizeof text));
+}
+
+static void explain(const struct scene *scene)
+{
+    struct scene_reason reason;
+    for (int on = 1; on >= 0; on--) {
+        printf("\neffects that are %s:\n", on ? "on" : "off");
+        for (uint32_t k = 0; scene_explain(scene, k, &reason); k++) {
+            if (reason.on != (on == 1)) continue;
+            printf("  %-18s %s\n", effect_word(reason.effect), effect_doc(reason.effect));
+            printf("  %-18s   %s\n", "", reason.why);
+        }
+    }
+}
+
+int cli_check(const struct options *options)
+{
+    struct error error = {0};
+    struct setup setup;
+    if (!opening_load(&setup, options, options->operands[0], NULL, true, &error)) {
+        setup_free(&setup);
+        return opening_fail(&error);
+    }
+    tell_summary(&setup);
+    if (options_given(options, OPTION_explain)) explain(setup.scene);
+    setup_free(&setup);
+    return EXIT_DONE;
+}

@@ -1,0 +1,77 @@
+/* cli_frame.c - `frame SCENE|RUN`: one picture. */
+#include "cli/cli.h"
+#include "cli/opening.h"
+#include "run/film.h"
+#include "run/folder.h"
+#include "run/recall.h"
+#include "run/footage.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool save_picture(struct film *film, const struct footage *footage, const char *path,
+                         struct error *error)
+{
+    struct encoder_job job = {0};
+    struct image_note notes[ENCODER_NOTES];
+    film_describe(film, footage->grains.time, &job);
+    for (uint32_t k = 0; k < job.note_count; k++) {
+        notes[k] = (struct image_note){job.notes[k].key, job.notes[k].text};
+    }
+    return image_save(&film->image, path, film->scene->output.png_level, notes, job.note_count,
+                      error);
+}
+
+static bool draw(const struct options *options, const struct setup *setup, const char *path,
+                 struct footage *footage, struct error *error)
+{
+    double t;
+    char name[FILE_PATH_MAX];
+    if (!options_real(options, OPTION_time, footage_end(footage), &t, error)) return false;
+    snprintf(name, sizeof name, "%s.png", setup->scene->name);
+    const char *output = options->values[OPTION_output];
+    if (!output) output = name;
+    struct film film = {0};
+    struct view view = setup->scene->view;
+    /* A single picture is coloured by itself, unless the run it belongs to has a range. */
+    recall_range(path, setup->scene, &view);
+    view.range_from = RANGE_FRAME;
+    const bool done = film_open(&film, setup->scene, setup->model, &view, error)
+        && footage_go(footage, t, error)
+        && film_draw(&film, &footage->grains, footage->steps, footage->wall, error)
+        && save_picture(&film, footage, output, error);
+    film_close(&film);
+    if (!done) return false;
+    if (footage->from_dumps && fabs(footage->grains.time - t) > 1e-9 * fabs(t)) {
+        fprintf(stderr, "the nearest frame that the run kept is at t = %.6g\n", footage->grains.time);
+    }
+    printf("%s\n", output);
+    return true;
+}
+
+int cli_frame(const struct options *options)
+{
+    struct error error = {0};
+    struct setup setup = {0};
+    struct footage footage = {0};
+    struct progress progress;
+    const char *path = options->operands[0];
+    char dump[FILE_PATH_MAX];
+    const bool redraws = setup_is_run(path) && file_exists(folder_path(dump, path, "dump/index.csv"));
+    bool done = opening_threads(options, &error) > 0
+        && progress_begin(&progress, options->values[OPTION_progress], &error)
+        && opening_load(&setup, options, path, NULL, !redraws, &error)
+        && footage_open(&footage, &setup, path, film_needs_contacts(&setup.scene->view), &error);
+    if (done) {
+        opening_catch_signals();
+        footage.report = opening_report;
+        footage.context = &progress;
+        footage.signal = &opening_signal;
+        done = draw(options, &setup, path, &footage, &error);
+        progress_end(&progress);
+    }
+    footage_close(&footage);
+    setup_free(&setup);
+    return done ? EXIT_DONE : opening_fail(&error);
+}

@@ -1,0 +1,82 @@
+/* csv.c - see csv.h. */
+#include "measure/csv.h"
+
+#include "base/file.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+void csv_number(FILE *stream, double value)
+{
+    char text[40];
+    if (isnan(value)) {                 /* without the sign that printf may add */
+        fputs("nan", stream);
+        return;
+    }
+    for (int digits = 6; digits <= 17; digits += digits < 15 ? 9 : 1) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value) break;
+    }
+    fputs(text, stream);
+}
+
+/* A unit for the units line; pure numbers say 1. */
+static const char *unit_or_one(const char *unit) { return *unit ? unit : "1"; }
+
+bool csv_save_field(const char *path, const struct field *field, const struct scene *scene,
+                    struct error *error)
+{
+    static const char axes[] = "xyz";
+    const size_t cells = (size_t)field->nx * field->ny;
+    const char *length = unit_or_one(scene_unit(scene, "length"));
+    struct file file;
+    assert(field->components <= 3);
+    if (!file_begin(&file, path, error)) return false;
+    fprintf(file.stream, "x,y");
+    for (uint32_t c = 0; c < field->components; c++) {
+        fprintf(file.stream, ",%s", field->name);
+        if (field->components > 1) fprintf(file.stream, "_%c", axes[c]);
+    }
+    fprintf(file.stream, "\n# units: %s,%s", length, length);
+    for (uint32_t c = 0; c < field->components; c++) {
+        fprintf(file.stream, ",%s", unit_or_one(field->unit));
+    }
+    for (size_t k = 0; k < cells; k++) {
+        fputc('\n', file.stream);
+        csv_number(file.stream, field->x0 + ((double)(k % field->nx) + 0.5) * field->cell);
+        fputc(',', file.stream);
+        csv_number(file.stream, field->y0 + ((double)(k / field->nx) + 0.5) * field->cell);
+        for (uint32_t c = 0; c < field->components; c++) {
+            fputc(',', file.stream);
+            csv_number(file.stream, field->values[c * cells + k]);
+        }
+    }
+    fputc('\n', file.stream);
+    return file_commit(&file, error);
+}
+
+bool csv_save_grains(const char *path, const struct grains *grains, const struct scene *scene,
+                     struct error *error)
+{
+    const char *length = unit_or_one(scene_unit(scene, "length"));
+    const char *speed = unit_or_one(scene_unit(scene, "speed"));
+    const char *rate = unit_or_one(scene_unit(scene, "1/time"));
+    struct file file;
+    if (!file_begin(&file, path, error)) return false;
+    fprintf(file.stream, "id,x,y,vx,vy,spin,radius,collision_rate,species\n"
+            "# units: 1,%s,%s,%s,%s,%s,%s,%s,1\n", length, length, speed, speed, rate, length, rate);
+    for (uint32_t k = 0; k < grains->count; k++) {
+        const double numbers[] = {grains->x[k], grains->y[k], grains->vx[k], grains->vy[k],
+                                  grains->spin[k], grains->radius[k]};
+        fprintf(file.stream, "%" PRIu32, grains->id[k]);
+        for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++) {
+            fputc(',', file.stream);
+            csv_number(file.stream, numbers[n]);
+        }
+        fprintf(file.stream, ",%.9g,%u\n", (double)grains->collision_rate[k],
+                (unsigned)grains->species[k]);
+    }
+    return file_commit(&file, error);
+}

@@ -1,0 +1,38 @@
+/* heap.h - the surface of a heap and the slopes of its flanks. */
+#ifndef HEAP_H
+#define HEAP_H
+
+#include "base/error.h"
+#include "model/grains.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct heap {
+    double   x0, width;         /* left end and width of a bin */
+    uint32_t bins;
+    double  *height;            /* of the surface above the base at the middle of each bin */
+    double   base;
+};
+
+/* The surface between x0 and x1: the highest point of any disc above the middle of each bin, 0
+ * where there is none.  Grains faster than `speed_max` are still falling and are left out
+ * (INFINITY: all count).  Bins of about one diameter; the caller frees. */
+bool heap_create(const struct grains *grains, double x0, double x1, uint32_t bins, double base,
+                 double speed_max, struct heap *heap, struct error *error);
+void heap_free(struct heap *heap);
+
+struct heap_slope {
+    double left, left_error;    /* tan of the angle, positive uphill to the top; NAN: no flank */
+    double right, right_error;
+    double slope, slope_error;  /* both flanks, weighted alike */
+    double angle, angle_error;  /* of that slope, degrees */
+    double top_x, top;          /* where the top is, and its height */
+};
+
+/* Straight lines through what lies between `low` and `high` shares of the height (0.15 and 0.85
+ * leave the rounded top and the tails out).  The errors are those of the fits: neighbouring bins
+ * share grains, so take bins of a diameter or more. */
+struct heap_slope heap_slope(const struct heap *heap, double low, double high);
+
+#endif

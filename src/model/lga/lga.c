@@ -1,0 +1,388 @@
+/* lga.c - the lattice gas as a model: what a scene asks for, turned into nodes, and back.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Seven grains fill a node: one in its centre and six around it, at spacing / sqrt(7), turned by
+ * 19.1 degrees against the links.  Those places of all nodes together form a perfect triangular
+ * lattice, so a heap at rest looks like densely packed discs of diameter spacing / sqrt(7), and
+ * the default spacing is sqrt(7) mean diameters.  Grains have no identity here: a picture numbers
+ * them by node and place.
+ */
+#include "model/lga/lga.h"
+
+#include "model/model.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define SQRT7 2.6457513110645905905
+
+enum { SITES_MAX = 1 << 26 };           /* 40 bytes a site: 2.7 GB */
+
+#define ROW(member) offsetof(struct lga_settings, member)
+static const struct key keys[] = {
+    {"method", KEY_CHOICE, ROW(method), "gmlg", NAN, NAN, NULL, "gmlg",
+     "rules: gmlg, a gas with gravity and up to seven rest grains a node"},
+    {"spacing", KEY_REAL, ROW(spacing), "nan", KEY_POSITIVE, NAN, "length", NULL,
+     "distance of nodes; when absent sqrt(7) mean diameters, so that seven grains fill a node"},
+    {"tick", KEY_REAL, ROW(tick), "nan", KEY_POSITIVE, NAN, "time", NULL,
+     "duration of a tick, in which a mover goes one spacing; when absent sqrt(spacing / gravity), "
+     "without gravity spacing / speed of the grains at the start"},
+    {"k", KEY_REAL, ROW(k), "nan", 0, 1, "1", NULL,
+     "share of collisions that lose energy; when absent 1 - restitution^2"},
+    {"g", KEY_REAL, ROW(g), "0.5", 0, 1, "1", NULL,
+     "chance that gravity acts on a node in a tick"},
+    {"s", KEY_REAL, ROW(s), "0", 0, 1, "1", NULL,
+     "static friction: chance that a grain supported on one side stays"},
+    {"pw", KEY_REAL, ROW(pw), "nan", 0, 1, "1", NULL,
+     "chance that a grain stops at a wall or a full node instead of bouncing back; when absent k"},
+    {"gain", KEY_REAL, ROW(gain), "1", 0, 1, "1", NULL,
+     "chance that an elastic collision with a rest grain sets it in motion"},
+    {"orientation", KEY_CHOICE, ROW(orientation), "V", NAN, NAN, NULL, "V|H",
+     "V: a link points down (heaps of 30 degrees); H: links lie level (heaps of 60 degrees)"},
+};
+
+static const struct key_group group = {
+    "lga", "the lattice gas", keys, sizeof keys / sizeof *keys, sizeof(struct lga_settings)
+};
+
+/* --- what the scene leaves open --- */
+
+static double speed_at_start(const struct scene *scene)
+{
+    double most = 0;
+    for (uint32_t k = 0; k < scene->placement_count; k++) {
+        const struct placement *p = &scene->placements[k];
+        const double t = isfinite(p->temperature) ? p->temperature : 0;
+        most = fmax(most, sqrt(p->velocity[0] * p->velocity[0] + p->velocity[1] * p->velocity[1]
+                               + 2 * t));
+    }
+    for (uint32_t k = 0; k < scene->source_count; k++) {
+        most = fmax(most, hypot(scene->sources[k].velocity[0], scene->sources[k].velocity[1]));
+    }
+    return most > 0 ? most : 1;
+}
+
+/* A collision with restitution e keeps e^2 of the energy of the relative motion; here a share k
+ * of the collisions loses all of it. */
+static double inelastic_share(const struct scene *scene)
+{
+    double sum = 0;
+    if (!(scene->effects & EFFECT_DISSIPATION)) return 0;
+    for (uint32_t k = 0; k < scene->species_count; k++) {
+        const double e = scene->species[k].restitution;
+        sum += isfinite(e) ? 1 - fmin(1, e * e) : 0.5;
+    }
+    return scene->species_count ? sum / scene->species_count : 0.5;
+}
+
+static struct lga_settings completed(const struct scene *scene)
+{
+    struct lga_settings s = {.spacing = NAN, .tick = NAN, .k = NAN, .g = 0.5, .pw = NAN, .gain = 1};
+    const struct lga_settings *given = scene_settings(scene, "lga");
+    if (given) s = *given;
+    if (!isfinite(s.spacing)) s.spacing = SQRT7 * 2 * scene->radius_mean;
+    if (!isfinite(s.tick)) {
+        double gravity = 0;             /* the strongest of all phases, so that they tick alike */
+        for (uint32_t p = 0; p < scene->phase_count; p++) {
+            const double *g = scene->phases[p]->gravity;
+            gravity = fmax(gravity, hypot(g[0], g[1]));
+        }
+        s.tick = gravity > 0 ? sqrt(s.spacing / gravity) : s.spacing / speed_at_start(scene);
+    }
+    if (!isfinite(s.k)) s.k = inelastic_share(scene);
+    if (!isfinite(s.pw)) s.pw = s.k;
+    return s;
+}
+
+/* How many nodes, as a real number: too many must not overflow. */
+static double sites_about(const struct scene *scene, double spacing)
+{
+    const double width = scene->box[2] - scene->box[0], height = scene->box[3] - scene->box[1];
+    return (width / spacing + 5) * (height / spacing + 5) * 2 / sqrt(3);
+}
+
+/* Fills in spacing and tick, the same ones for all phases.  k and pw stay open: they follow from
+ * each phase's own restitution. */
+static void fill_settings(const struct scene *scene, const struct lga_settings *s)
+{
+    for (uint32_t p = 0; p < scene->phase_count; p++) {
+        struct lga_settings *given = scene_settings(scene->phases[p], "lga");
+        if (given && isnan(given->spacing)) given->spacing = s->spacing;
+        if (given && isnan(given->tick)) given->tick = s->tick;
+    }
+}
+
+static void lga_resolve(struct scene *scene, struct findings *findings)
+{
+    const struct lga_settings s = completed(scene);
+    fill_settings(scene, &s);
+    if (!(sites_about(scene, s.spacing) <= SITES_MAX)) {
+        findings_tell(findings, scene, FINDING_ERROR, "lga.spacing", "lga.spacing = %g gives about "
+            "%.3g nodes, more than %d; use a larger spacing or a smaller box", s.spacing,
+            sites_about(scene, s.spacing), SITES_MAX);
+    }
+    const double gx = scene->gravity[0], gy = scene->gravity[1];
+    if (gx != 0 || gy > 0) {
+        const bool down = fabs(gx) <= -gy * tan(M_PI / 6);
+        findings_tell(findings, scene, down ? FINDING_WARNING : FINDING_ERROR, "gravity",
+            "gravity = (%g, %g): the lattice gas knows gravity along -y only%s", gx, gy,
+            down ? "; its tilt is passed over" : "; turn the scene");
+    }
+    for (uint32_t k = 0; k < scene->source_count; k++) {
+        if (scene->sources[k].kind == SOURCE_POINT) continue;
+        findings_tell(findings, scene, FINDING_ERROR, "sources", "source %u is a stream of columns;"
+            " the lattice gas pours from points only: give it kind = \"point\" and a rate", k);
+    }
+    if (scene->effects & EFFECT_POLYDISPERSE) {
+        findings_tell(findings, scene, FINDING_WARNING, "grains", "the grains of a lattice gas are "
+            "all alike; the mean radius %g stands for all", scene->radius_mean);
+    }
+}
+
+static uint64_t lga_memory(const struct scene *scene)
+{
+    const uint64_t site = LGA_DIRECTIONS * sizeof(uint32_t) + 2 * sizeof(uint32_t) + 8;
+    return (uint64_t)fmin(sites_about(scene, completed(scene).spacing), 1e15) * site;
+}
+
+/* --- life --- */
+
+/* The walls may have changed: by a gate, or because a saved state was loaded. */
+static void update_walls(struct lga *lga)
+{
+    const double t = lga_step_time(lga);
+    uint64_t present = ARCHIVE_HASH_START;
+    for (uint32_t w = 0; w < lga->scene->wall_count; w++) {
+        const bool there = wall_present(&lga->scene->walls[w], t);
+        present = archive_hash(present, &there, sizeof there);
+    }
+    if (lga->walls_stale || present != lga->gates_present) {
+        lga_lattice_rasterise(&lga->lattice, lga->scene, t, lga->kind);
+        lga->gates_present = present;
+        lga->walls_stale = false;
+        lga->trapped = true;
+    }
+    if (lga->trapped) lga_fill_release_trapped(lga);
+}
+
+static void mean_grain(struct lga *lga)
+{
+    const struct scene *scene = lga->scene;
+    double density = 0;
+    for (uint32_t k = 0; k < scene->species_count; k++) density += scene->species[k].density;
+    density = scene->species_count ? density / scene->species_count : 1;
+    lga->radius = lga->lattice.spacing / (2 * SQRT7);
+    lga->mass = density * M_PI * scene->radius_mean * scene->radius_mean;
+}
+
+static void lga_destroy(void *state)
+{
+    struct lga *lga = state;
+    arena_free(&lga->arena);
+    free(lga);
+}
+
+static bool set_up(struct lga *lga, struct error *error)
+{
+    const struct scene *scene = lga->scene;
+    const struct lga_settings s = completed(scene);
+    if (!(s.spacing > 0) || !(sites_about(scene, s.spacing) <= SITES_MAX)) {
+        return error_set_code(error, EXIT_SCENE, "%s: lga.spacing = %g does not give a lattice of "
+            "1 to %d nodes; delete the line and sandreel chooses", scene->path, s.spacing,
+            SITES_MAX);
+    }
+    lga->rule = (struct lga_rule){
+        .gravity = scene->effects & EFFECT_GRAVITY, .vertical = s.orientation == LGA_VERTICAL,
+        .inelastic = s.k, .fall = s.g, .friction = s.s, .wall_stop = s.pw, .gain = s.gain
+    };
+    lga->lattice = lga_lattice_of(scene, s.spacing, lga->rule.vertical);
+    lga->sites = lga->lattice.rows * lga->lattice.columns;
+    lga->tick = s.tick;
+    lga->seed = scene->seed;
+    if (!lga_step_allocate(lga) || !arena_array(&lga->arena, &lga->entered, scene->source_count)) {
+        return error_set(error, "%s: not enough memory for a lattice of %u nodes; give "
+            "lga.spacing a larger value than %g", scene->path, lga->sites, s.spacing);
+    }
+    mean_grain(lga);
+    lga_lattice_rasterise(&lga->lattice, scene, 0, lga->kind);
+    lga->walls_stale = true;            /* the next tick may begin at another time */
+    return lga_fill_placed(lga, error);
+}
+
+static void *lga_create(const struct scene *scene, struct error *error)
+{
+    struct lga *lga = calloc(1, sizeof *lga);
+    if (!lga) {
+        error_set(error, "not enough memory for the lattice gas");
+        return NULL;
+    }
+    lga->scene = scene;
+    if (set_up(lga, error)) return lga;
+    lga_destroy(lga);
+    return NULL;
+}
+
+static enum advance lga_advance(void *state, double t_end, uint64_t budget)
+{
+    struct lga *lga = state;
+    for (; lga_step_time(lga) + 0.5 * lga->tick <= t_end; budget--) {
+        if (budget == 0) return ADVANCE_BUDGET;
+        update_walls(lga);
+        lga_fill_sources(lga);
+        lga_step(lga);
+    }
+    return ADVANCE_REACHED;
+}
+
+/* --- looking --- */
+
+/* Where the grain in place `place` of a node lies: 0 in the centre, 1 + d towards direction d. */
+static void place_position(const struct lga *lga, uint32_t site, int place, double *x, double *y)
+{
+    lga_lattice_position(&lga->lattice, site, x, y);
+    if (place > 0) {
+        double dx, dy;
+        const double turn = asin(sqrt(3) / (2 * SQRT7));        /* 19.1 degrees */
+        lga_lattice_vector(&lga->lattice, (place - 1) * M_PI / 3 + turn, &dx, &dy);
+        *x += dx / SQRT7;
+        *y += dy / SQRT7;
+    }
+    const double *box = lga->lattice.box;
+    if (lga->lattice.wraps_x) *x -= (box[2] - box[0]) * floor((*x - box[0]) / (box[2] - box[0]));
+    if (lga->lattice.wraps_y) *y -= (box[3] - box[1]) * floor((*y - box[1]) / (box[3] - box[1]));
+}
+
+static void show(const struct lga *lga, struct grains *out, uint32_t id, uint32_t site, int place,
+                 bool flies)
+{
+    double x, y, vx = 0, vy = 0;
+    place_position(lga, site, place, &x, &y);
+    if (flies) lga_lattice_vector(&lga->lattice, (place - 1) * M_PI / 3, &vx, &vy);
+    const double *w = out->window;
+    if (w[0] <= w[2] && (x < w[0] || x > w[2] || y < w[1] || y > w[3])) return;
+    if (out->count == out->capacity) {
+        out->missed++;
+        return;
+    }
+    const uint32_t i = out->count++;
+    if (out->id) out->id[i] = id;
+    if (out->x) out->x[i] = x;
+    if (out->y) out->y[i] = y;
+    if (out->vx) out->vx[i] = vx / lga->tick;
+    if (out->vy) out->vy[i] = vy / lga->tick;
+    if (out->angle) out->angle[i] = 0;
+    if (out->spin) out->spin[i] = 0;
+    if (out->radius) out->radius[i] = lga->radius;
+    if (out->mass) out->mass[i] = lga->mass;
+    if (out->collision_rate) out->collision_rate[i] = 0;
+    if (out->species) out->species[i] = 0;
+}
+
+static void lga_observe(const void *state, struct grains *out)
+{
+    const struct lga *lga = state;
+    out->time = lga_step_time(lga);
+    out->count = out->contact_count = out->missed = 0;
+    uint32_t id = 0;
+    for (uint32_t n = 0; n < lga->sites; n++) {
+        const unsigned moving = lga->moving[n];
+        int resting = lga->rest[n];
+        for (int d = 0; d < LGA_DIRECTIONS; d++) {
+            if (moving >> d & 1) show(lga, out, id++, n, d + 1, true);
+        }
+        /* Rest grains: centre first, then places without a mover; without gravity a node may hold
+         * more grains than places, and then they share. */
+        for (int round = 0; resting > 0; round++) {
+            for (int place = 0; place <= LGA_DIRECTIONS && resting > 0; place++) {
+                if (round == 0 && place > 0 && moving >> (place - 1) & 1) continue;
+                show(lga, out, id++, n, place, false);
+                resting--;
+            }
+        }
+    }
+}
+
+static void lga_count(const void *state, struct counters *out)
+{
+    const struct lga *lga = state;
+    double energy[LGA_DIRECTIONS], vx[LGA_DIRECTIONS], vy[LGA_DIRECTIONS];
+    for (int d = 0; d < LGA_DIRECTIONS; d++) {
+        lga_lattice_vector(&lga->lattice, d * M_PI / 3, &vx[d], &vy[d]);
+        vx[d] /= lga->tick;
+        vy[d] /= lga->tick;
+        energy[d] = 0.5 * lga->mass * (vx[d] * vx[d] + vy[d] * vy[d]);
+    }
+    uint64_t flying[LGA_DIRECTIONS] = {0};
+    *out = (struct counters){.time = lga_step_time(lga), .steps = lga->ticks,
+        .grains_in = lga->grains_in, .grains_out = lga->grains_out,
+        .collisions = lga->collisions, .rejected = lga->refused, .overlap_max = NAN};
+    for (uint32_t n = 0; n < lga->sites; n++) {
+        const unsigned moving = lga->moving[n];
+        const int load = lga->rest[n] + __builtin_popcount(moving);
+        if (load == 0) continue;
+        double x, y;
+        lga_lattice_position(&lga->lattice, n, &x, &y);
+        out->grains += (uint64_t)load;
+        out->potential_energy -= lga->mass * load
+                               * (lga->scene->gravity[0] * x + lga->scene->gravity[1] * y);
+        for (int d = 0; d < LGA_DIRECTIONS; d++) flying[d] += moving >> d & 1;
+    }
+    for (int d = 0; d < LGA_DIRECTIONS; d++) {
+        out->kinetic_energy += energy[d] * (double)flying[d];
+        out->momentum_x += lga->mass * vx[d] * (double)flying[d];
+        out->momentum_y += lga->mass * vy[d] * (double)flying[d];
+    }
+}
+
+static void lga_archive(void *state, struct archive *archive)
+{
+    struct lga *lga = state;
+    double tick = lga->tick;
+    archive_array(archive, "lga.moving", lga->moving, lga->sites);
+    archive_array(archive, "lga.rest", lga->rest, lga->sites);
+    archive_value(archive, "lga.ticks", &lga->ticks);
+    archive_value(archive, "lga.tick", &tick);
+    archive_value(archive, "lga.base_ticks", &lga->base_ticks);
+    archive_value(archive, "lga.base_time", &lga->base_time);
+    archive_value(archive, "lga.grains_in", &lga->grains_in);
+    archive_value(archive, "lga.grains_out", &lga->grains_out);
+    archive_value(archive, "lga.collisions", &lga->collisions);
+    archive_value(archive, "lga.refused", &lga->refused);
+    for (uint32_t k = 0; k < lga->scene->source_count; k++) {
+        char name[40];
+        snprintf(name, sizeof name, "lga.source.%u", k);
+        archive_value(archive, name, &lga->entered[k]);
+    }
+    if (archive->mode != ARCHIVE_LOAD || archive->failed) return;
+    for (uint32_t n = 0; n < lga->sites; n++) {
+        if (lga->rest[n] > LGA_ROOM || lga->moving[n] >= LGA_STATES) {
+            archive_fail(archive, "the saved lattice holds a node in an impossible state");
+            return;
+        }
+    }
+    if (tick != lga->tick) {            /* this phase ticks otherwise: count its time from here */
+        lga->base_time += (double)(lga->ticks - lga->base_ticks) * tick;
+        lga->base_ticks = lga->ticks;
+    }
+    lga->walls_stale = true;
+}
+
+const struct model model_lga = {
+    .name     = "lga",
+    .summary  = "Grains that hop on a triangular lattice, seven to a node: the fastest flow of sand.",
+    .work     = "ticks",
+    .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_POLYDISPERSE | EFFECT_PERIODIC
+              | EFFECT_WALLS | EFFECT_GATES | EFFECT_INFLOW | EFFECT_OUTFLOW,
+    .settings = &group,
+    .resolve  = lga_resolve,
+    .memory   = lga_memory,
+    .create   = lga_create,
+    .destroy  = lga_destroy,
+    .advance  = lga_advance,
+    .observe  = lga_observe,
+    .archive  = lga_archive,
+    .count    = lga_count,
+};

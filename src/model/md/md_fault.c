@@ -1,0 +1,108 @@
+/* md_fault.c - see md_fault.h.
+ *
+ * The contact loop counts overlaps that could be too large even for the smallest grain; only
+ * when there is one are all contacts looked at, where they were when the force was computed.
+ */
+#include "model/md/md_fault.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static void blame(struct md *md, uint32_t i)
+{
+    const struct grain *g = &md->grains[i];
+    md->broken = true;
+    md->fault = (struct fault){.time = md_time(md), .x = g->x, .y = g->y, .grain = g->id};
+}
+
+static bool blame_number(struct md *md)
+{
+    for (uint32_t i = 0; i < md->count; i++) {
+        const struct grain *g = &md->grains[i];
+        if (isfinite(g->x) && isfinite(g->y) && isfinite(g->ux) && isfinite(g->uy)) continue;
+        blame(md, i);
+        snprintf(md->fault.text, sizeof md->fault.text, "t = %g: grain %u at (%g, %g) moves at "
+                 "(%g, %g), which is no number; the time step is too long for the contact: "
+                 "delete md.dt and sandreel chooses, or divide md.dt = %g by ten",
+                 md->fault.time, g->id, g->x, g->y, g->ux, g->uy, md->dt);
+        return false;
+    }
+    return true;
+}
+
+/* Where the grain was when the last forces were computed. */
+static void place_before(const struct md *md, uint32_t i, double *x, double *y)
+{
+    *x = md->grains[i].x - (md->gears ? 0 : md->dt * md->halves[i].hx);
+    *y = md->grains[i].y - (md->gears ? 0 : md->dt * md->halves[i].hy);
+}
+
+static bool blame_overlap(struct md *md, uint32_t i, double share, const char *with)
+{
+    blame(md, i);
+    snprintf(md->fault.text, sizeof md->fault.text, "t = %g: grain %u at (%.6g, %.6g) overlaps %s "
+             "by %.3g of a radius, more than overlap_limit = %g; make the grains stiffer "
+             "(md.overlap, grains.stiffness), or md.dt = %g smaller if a grain was too fast for it",
+             md->fault.time, md->fault.grain, md->fault.x, md->fault.y, with, share,
+             md->scene->overlap_limit, md->dt);
+    return false;
+}
+
+static bool check_overlaps(struct md *md)
+{
+    const double limit = md->scene->overlap_limit;
+    for (uint32_t k = 0; k < md->link_count; k++) {
+        const struct link link = md->links[k];
+        if (!(link.j & LINK_TOUCHES)) continue;
+        const uint32_t j = link.j & LINK_INDEX, image = link.j >> LINK_IMAGE_SHIFT & 15;
+        double xi, yi, xj, yj;
+        place_before(md, link.i, &xi, &yi);
+        place_before(md, j, &xj, &yj);
+        const double dx = xi - xj - md->image_x[image], dy = yi - yj - md->image_y[image];
+        const double ri = md->grains[link.i].radius, rj = md->grains[j].radius;
+        const double share = (ri + rj - hypot(dx, dy)) / fmin(ri, rj);
+        if (share <= limit) continue;
+        char with[48];
+        snprintf(with, sizeof with, "grain %u", md->grains[j].id);
+        return blame_overlap(md, link.i, share, with);
+    }
+    for (uint32_t k = 0; k < md->wall_link_count; k++) {
+        const struct wall_link *link = &md->wall_links[k];
+        if (!link->touches) continue;
+        double x, y;
+        place_before(md, link->grain, &x, &y);
+        const struct wall_nearest nearest = wall_nearest(&md->walls_now[link->wall],
+            x - md->image_x[link->image], y - md->image_y[link->image]);
+        const double share = 1 - nearest.distance / md->grains[link->grain].radius;
+        if (share > limit) return blame_overlap(md, link->grain, share, "a wall");
+    }
+    return true;
+}
+
+bool md_fault_check(struct md *md)
+{
+    if (md->broken) return blame_number(md) && false;
+    if (md->suspects == 0) return true;
+    return check_overlaps(md);
+}
+
+bool md_fault_escaped(struct md *md)
+{
+    const struct scene *scene = md->scene;
+    const double *box = scene->box;
+    for (uint32_t i = 0; i < md->count; i++) {
+        const struct grain *g = &md->grains[i];
+        const double room = 2 * g->radius;
+        const bool out = (scene->left == BORDER_WALL && g->x < box[0] - room)
+                      || (scene->right == BORDER_WALL && g->x > box[2] + room)
+                      || (scene->bottom == BORDER_WALL && g->y < box[1] - room)
+                      || (scene->top == BORDER_WALL && g->y > box[3] + room);
+        if (!out || g->inverse_mass == 0) continue;
+        blame(md, i);
+        snprintf(md->fault.text, sizeof md->fault.text, "t = %g: grain %u got through the border "
+                 "to (%.6g, %.6g); it was too fast for the time step: make md.dt = %g smaller, "
+                 "or the grains stiffer (md.overlap)", md->fault.time, g->id, g->x, g->y, md->dt);
+        return false;
+    }
+    return true;
+}

@@ -1,0 +1,143 @@
+/* md_flow.c - grains that enter and leave.
+ *
+ * Grains leave when the list is made anew, that is before any has moved farther than half the
+ * skin.  One that leaves is marked by zero inverse mass and dropped by the sort.
+ */
+#include "model/md/md_flow.h"
+
+#include <math.h>
+
+enum { RETRY_STEPS = 20 };      /* a grain without room tries again so much later */
+
+bool md_flow_due(const struct md *md)
+{
+    if (!md->cursors) return false;
+    const double t = md_time(md);
+    if (md->steps < md->retry_step) return false;
+    for (uint32_t s = 0; s < md->scene->source_count; s++) {
+        if (source_due(md->scene, s, &md->cursors[s]) <= t) return true;
+    }
+    return false;
+}
+
+static bool has_left(struct md *md, const struct grain *g, double t)
+{
+    const struct scene *scene = md->scene;
+    const double *box = scene->box, far = 2 * g->radius;
+    if ((scene->left == BORDER_OPEN && g->x < box[0] - far)
+        || (scene->right == BORDER_OPEN && g->x > box[2] + far)
+        || (scene->bottom == BORDER_OPEN && g->y < box[1] - far)
+        || (scene->top == BORDER_OPEN && g->y > box[3] + far)) return true;
+    for (uint32_t k = 0; k < scene->sink_count; k++) {
+        const double *r = scene->sinks[k].region;
+        if (g->x >= r[0] && g->y >= r[1] && g->x <= r[2] && g->y <= r[3]) return true;
+    }
+    if (scene->screen_count == 0) return false;
+    const struct species *species = &scene->species[g->species];
+    return tally_cross(&md->tally, scene, t, g->x, g->y, g->ux, g->uy, g->rim / g->radius,
+                       1 / g->inverse_mass, scene_inertia(species, g->radius));
+}
+
+static void let_out(struct md *md)
+{
+    const double t = md_time(md);
+    for (uint32_t i = 0; i < md->count; i++) {
+        struct grain *g = &md->grains[i];
+        if (!has_left(md, g, t)) continue;
+        md->tally.mass_out += 1 / g->inverse_mass;
+        g->inverse_mass = 0;
+        md->grains_out++;
+    }
+}
+
+/* Would it overlap a grain that is there?  All are asked: grains enter seldom. */
+static bool has_room(const struct md *md, const struct source_grain *grain)
+{
+    for (uint32_t i = 0; i < md->count; i++) {
+        const struct grain *g = &md->grains[i];
+        if (g->inverse_mass == 0) continue;
+        const double reach = g->radius + grain->radius;
+        const double dx = g->x - grain->x, dy = g->y - grain->y;
+        if (dx * dx + dy * dy < reach * reach) return false;
+    }
+    return true;
+}
+
+bool md_flow_add(struct md *md, const struct source_grain *grain, double spin)
+{
+    if (md->count == md->count_max) return false;
+    const double mass = scene_mass(&md->scene->species[grain->species], grain->radius);
+    const double half = md->gears ? 0 : 0.5 * md->dt, *gravity = md->scene->gravity;
+    const double rim = md->law.tangential ? spin * grain->radius : 0;
+    md->grains[md->count] = (struct grain){
+        .x = grain->x, .y = grain->y, .ux = grain->vx, .uy = grain->vy, .rim = rim,
+        .radius = grain->radius, .inverse_mass = 1 / mass, .id = md->id_next++,
+        .species = grain->species,
+    };
+    md->halves[md->count] = (struct half){
+        .hx = grain->vx - half * gravity[0], .hy = grain->vy - half * gravity[1], .hrim = rim,
+    };
+    if (md->gears) {
+        md->gears[md->count] = (struct gear){.x2 = 0.5 * md->dt * md->dt * gravity[0],
+                                             .y2 = 0.5 * md->dt * md->dt * gravity[1]};
+    }
+    if (md->collisions) {
+        md->collisions[md->count] = 0;
+        md->collision_rate[md->count] = 0;
+    }
+    md->count++;
+    return true;
+}
+
+/* Lets one batch in; false if it must wait for room. */
+static bool let_batch_in(struct md *md, uint32_t s)
+{
+    struct source_cursor *cursor = &md->cursors[s];
+    const struct source *source = &md->scene->sources[s];
+    const double t = md_time(md);
+    const uint32_t count = source_batch(md->scene, s, cursor->next, md->batch, md->batch_max);
+    if (md->count + count > md->count_max) return false;
+    for (uint32_t k = 0; k < count; k++) {
+        if (source->count > 0 && cursor->made >= source->count) break;
+        struct source_grain grain = source_flown(md->scene, &md->batch[k], t);
+        if (source->kind == SOURCE_POINT) {
+            grain = md->batch[k];                               /* it may have waited there */
+            if (!has_room(md, &grain)) return false;
+        }
+        md_flow_add(md, &grain, 0);
+        md->tally.mass_in += scene_mass(&md->scene->species[grain.species], grain.radius);
+        md->grains_in++;
+        cursor->made++;
+    }
+    cursor->next++;
+    return true;
+}
+
+void md_flow_pass(struct md *md)
+{
+    if (md->effects & (EFFECT_OUTFLOW | EFFECT_SCREEN)) let_out(md);
+    if (!md->cursors) return;
+    const double t = md_time(md);
+    bool waits = false;
+    for (uint32_t s = 0; s < md->scene->source_count; s++) {
+        while (source_due(md->scene, s, &md->cursors[s]) <= t) {
+            if (let_batch_in(md, s)) continue;
+            waits = true;
+            break;
+        }
+    }
+    md->retry_step = waits ? md->steps + RETRY_STEPS : 0;
+}
+
+void md_flow_window(struct md *md)
+{
+    if (!md->collisions) return;
+    const double length = md->window_length;
+    const uint64_t window = (uint64_t)(md_time(md) / length);
+    if (window == md->window) return;
+    for (uint32_t i = 0; i < md->count; i++) {
+        md->collision_rate[i] = (float)(md->collisions[i] / length);
+        md->collisions[i] = 0;
+    }
+    md->window = window;
+}

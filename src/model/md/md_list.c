@@ -1,0 +1,441 @@
+/* md_list.c - the neighbour list: cells, sorting, pairs within reach plus a skin.
+ *
+ * Cells are at least as wide as the largest reach, so partners sit in the nine cells around.
+ * Grains are sorted by cell, the shorter side of the box running fastest; a pair belongs to the
+ * grain of lower index.  Strips (md.h) list their pairs side by side, each into its own stretch
+ * of a scratch array, and the stretches are then pushed together.
+ */
+#include "model/md/md_list.h"
+
+#include "model/md/md_walls.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define NONE UINT32_MAX
+
+struct md_scratch {
+    uint32_t cell_max, fast, slow;      /* cells along the fast and the slow axis */
+    bool     x_is_fast;
+    double   x0, y0, per_x, per_y;      /* origin and cells per length */
+    uint32_t nx, ny;
+    uint32_t *cell_first;       /* [cells + 1] */
+    uint32_t *cell_of;          /* by old index */
+    uint32_t *order;            /* old index by new */
+    uint32_t *place;            /* new index by old; NONE: has left */
+    struct grain *grains;
+    struct half  *halves;
+    struct gear  *gears;
+    uint32_t *collisions;
+    float    *collision_rate;
+    uint32_t *kept_first;       /* [count + 1]: contacts that go on, by their new first grain */
+    uint32_t *kept_partner;
+    double   *kept_spring;
+    struct link *links;         /* stretches of the strips: inner from below, cross from above */
+    double   *springs;
+    uint32_t *inner, *cross;    /* by strip: how many */
+    uint32_t links_per_grain;
+};
+
+static uint32_t links_per_grain(const struct scene *scene, double skin)
+{
+    /* Discs around one disc, densely packed, half of them: 0.5 ((reach + skin + R) / R)^2. */
+    const double span = (2 * scene->radius_max + skin) / scene->radius_mean + 1;
+    return (uint32_t)ceil(2 + 0.5 * span * span);
+}
+
+bool md_list_create(struct md *md)
+{
+    struct arena *arena = &md->arena;
+    const uint32_t n = md->count_max;
+    if (!arena_array(arena, &md->scratch, 1)) return false;
+    struct md_scratch *s = md->scratch;
+    s->links_per_grain = links_per_grain(md->scene, md->skin);
+    if ((uint64_t)n * s->links_per_grain > UINT32_MAX / 2) return false;
+    md->link_max = n * s->links_per_grain;
+    md->strip_max = n / STRIP_GRAINS + 1;
+    s->cell_max = 2 * n + 64;
+    const bool springs = md->springs || md->law.spring;
+    return arena_array(arena, &md->links, md->link_max)
+        && arena_array(arena, &md->springs, springs ? md->link_max : 0)
+        && arena_array(arena, &md->incoming, md->link_max / 2)
+        && arena_array(arena, &md->cross_push, md->strip_max > 1 ? md->link_max / 2 : 0)
+        && arena_array(arena, &md->strips, md->strip_max)
+        && arena_array(arena, &md->sums, md->strip_max)
+        && arena_array(arena, &s->cell_first, s->cell_max + 1)
+        && arena_array(arena, &s->cell_of, n) && arena_array(arena, &s->order, n)
+        && arena_array(arena, &s->place, n) && arena_array(arena, &s->grains, n)
+        && arena_array(arena, &s->halves, n)
+        && arena_array(arena, &s->gears, md->gears ? n : 0)
+        && arena_array(arena, &s->collisions, md->collisions ? n : 0)
+        && arena_array(arena, &s->collision_rate, md->collisions ? n : 0)
+        && arena_array(arena, &s->kept_first, n + 1)
+        && arena_array(arena, &s->kept_partner, md->link_max)
+        && arena_array(arena, &s->kept_spring, springs ? md->link_max : 0)
+        && arena_array(arena, &s->links, md->link_max)
+        && arena_array(arena, &s->springs, springs ? md->link_max : 0)
+        && arena_array(arena, &s->inner, md->strip_max)
+        && arena_array(arena, &s->cross, md->strip_max);
+}
+
+/* Brings grains back into a periodic box. */
+static void wrap(struct md *md)
+{
+    const double *box = md->scene->box;
+    const double width = box[2] - box[0], height = box[3] - box[1];
+    const bool along_x = md->scene->left == BORDER_PERIODIC;
+    const bool along_y = md->scene->bottom == BORDER_PERIODIC;
+    for (uint32_t i = 0; i < md->count; i++) {
+        struct grain *g = &md->grains[i];
+        if (along_x) g->x -= width * floor((g->x - box[0]) / width);
+        if (along_y) g->y -= height * floor((g->y - box[1]) / height);
+    }
+}
+
+/* Lays the cells over all grains; over the box along periodic axes. */
+static void lay_cells(struct md *md)
+{
+    struct md_scratch *s = md->scratch;
+    const double *box = md->scene->box;
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < md->count; i++) {
+        low[0] = fmin(low[0], md->grains[i].x);
+        high[0] = fmax(high[0], md->grains[i].x);
+        low[1] = fmin(low[1], md->grains[i].y);
+        high[1] = fmax(high[1], md->grains[i].y);
+    }
+    const bool periodic[2] = {md->scene->left == BORDER_PERIODIC,
+                              md->scene->bottom == BORDER_PERIODIC};
+    double size = md->reach_max + md->skin;
+    uint32_t cells[2];
+    for (;; size *= 1.25) {
+        double product = 1;
+        for (int axis = 0; axis < 2; axis++) {
+            if (periodic[axis]) {
+                low[axis] = box[axis];
+                high[axis] = box[axis + 2];
+            }
+            const double span = fmax(high[axis] - low[axis], 0) / size;
+            product *= fmax(1, floor(span) + !periodic[axis]);
+        }
+        if (product <= s->cell_max) break;
+    }
+    for (int axis = 0; axis < 2; axis++) {
+        const double span = fmax(high[axis] - low[axis], 0);
+        cells[axis] = (uint32_t)fmax(1, floor(span / size) + !periodic[axis]);
+        const double width = periodic[axis] ? span / cells[axis] : size;
+        if (axis == 0) s->per_x = 1 / width;
+        else s->per_y = 1 / width;
+    }
+    s->x0 = low[0];
+    s->y0 = low[1];
+    s->nx = cells[0];
+    s->ny = cells[1];
+    s->x_is_fast = cells[0] < cells[1];
+    s->fast = s->x_is_fast ? s->nx : s->ny;
+    s->slow = s->x_is_fast ? s->ny : s->nx;
+}
+
+static uint32_t cell_index(const struct md_scratch *s, uint32_t cx, uint32_t cy)
+{
+    return s->x_is_fast ? cy * s->fast + cx : cx * s->fast + cy;
+}
+
+static uint32_t cell_along(double place, double per, uint32_t cells)
+{
+    const double c = place * per;
+    return c < 0 ? 0 : c >= cells ? cells - 1 : (uint32_t)c;
+}
+
+/* Counting sort by cell, stable; grains that have left come to no place. */
+static void sort_grains(struct md *md)
+{
+    struct md_scratch *s = md->scratch;
+    const uint32_t cells = s->nx * s->ny, old_count = md->count;
+    memset(s->cell_first, 0, (cells + 1) * sizeof *s->cell_first);
+    for (uint32_t i = 0; i < old_count; i++) {
+        const struct grain *g = &md->grains[i];
+        s->cell_of[i] = NONE;
+        if (g->inverse_mass == 0) continue;
+        s->cell_of[i] = cell_index(s, cell_along(g->x - s->x0, s->per_x, s->nx),
+                                   cell_along(g->y - s->y0, s->per_y, s->ny));
+        s->cell_first[s->cell_of[i] + 1]++;
+    }
+    for (uint32_t c = 0; c < cells; c++) s->cell_first[c + 1] += s->cell_first[c];
+    md->count = s->cell_first[cells];
+    for (uint32_t i = 0; i < old_count; i++) {
+        s->place[i] = NONE;
+        if (s->cell_of[i] == NONE) continue;
+        s->place[i] = s->cell_first[s->cell_of[i]]++;
+        s->order[s->place[i]] = i;
+    }
+    for (uint32_t c = cells; c > 0; c--) s->cell_first[c] = s->cell_first[c - 1];
+    s->cell_first[0] = 0;
+}
+
+#define SWAP(a, b) do { void *swap_ = (a); (a) = (b); (b) = swap_; } while (0)
+
+static void permute(struct md *md)
+{
+    struct md_scratch *s = md->scratch;
+    for (uint32_t i = 0; i < md->count; i++) {
+        s->grains[i] = md->grains[s->order[i]];
+        s->halves[i] = md->halves[s->order[i]];
+    }
+    SWAP(md->grains, s->grains);
+    SWAP(md->halves, s->halves);
+    if (md->gears) {
+        for (uint32_t i = 0; i < md->count; i++) s->gears[i] = md->gears[s->order[i]];
+        SWAP(md->gears, s->gears);
+    }
+    if (!md->collisions) return;
+    for (uint32_t i = 0; i < md->count; i++) {
+        s->collisions[i] = md->collisions[s->order[i]];
+        s->collision_rate[i] = md->collision_rate[s->order[i]];
+    }
+    SWAP(md->collisions, s->collisions);
+    SWAP(md->collision_rate, s->collision_rate);
+}
+
+/* Sets the contacts of the old list aside, by the new index of their first grain. */
+static void keep_contacts(struct md *md)
+{
+    struct md_scratch *s = md->scratch;
+    memset(s->kept_first, 0, ((size_t)md->count + 1) * sizeof *s->kept_first);
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t k = 0; k < md->link_count; k++) {
+            const struct link link = md->links[k];
+            if (!(link.j & LINK_TOUCHES)) continue;
+            const uint32_t a = s->place[link.i], b = s->place[link.j & LINK_INDEX];
+            if (a == NONE || b == NONE) continue;
+            const uint32_t owner = a < b ? a : b;
+            if (pass == 0) {
+                s->kept_first[owner + 1]++;
+                continue;
+            }
+            const uint32_t at = s->kept_first[owner]++;
+            s->kept_partner[at] = a < b ? b : a;
+            if (s->kept_spring) s->kept_spring[at] = md->springs[k];
+        }
+        if (pass == 0) {
+            for (uint32_t i = 0; i < md->count; i++) s->kept_first[i + 1] += s->kept_first[i];
+        }
+    }
+    for (uint32_t i = md->count; i > 0; i--) s->kept_first[i] = s->kept_first[i - 1];
+    s->kept_first[0] = 0;
+}
+
+static void cut_strips(struct md *md)
+{
+    /* Wide enough that few links cross: eight rows of cells or more, as far as it goes. */
+    const uint32_t row = md->count / md->scratch->slow + 1;
+    const uint32_t wanted = row < STRIP_GRAINS / 8 ? STRIP_GRAINS
+                          : row < STRIP_GRAINS_MAX / 8 ? 8 * row : STRIP_GRAINS_MAX;
+    uint32_t strips = (md->count + wanted - 1) / wanted;
+    if (strips < 1) strips = 1;
+    if (strips > md->strip_max) strips = md->strip_max;
+    md->strip_count = strips;
+    for (uint32_t k = 0; k < strips; k++) {
+        md->strips[k].first = (uint32_t)((uint64_t)md->count * k / strips);
+        md->strips[k].last = (uint32_t)((uint64_t)md->count * (k + 1) / strips);
+    }
+}
+
+/* Stretches of one cell's neighbourhood: grains first..last-1 seen as image `image`. */
+struct stretch { uint32_t first, last, image; };
+
+static uint32_t neighbourhood(const struct md *md, uint32_t cx, uint32_t cy,
+                              struct stretch out[static 9])
+{
+    const struct md_scratch *s = md->scratch;
+    const bool along_x = md->scene->left == BORDER_PERIODIC;
+    const bool along_y = md->scene->bottom == BORDER_PERIODIC;
+    const uint32_t here = cell_index(s, cx, cy);
+    uint32_t count = 0;
+    for (int a = -1; a <= 1; a++) {
+        for (int b = -1; b <= 1; b++) {
+            const int dx = s->x_is_fast ? b : a, dy = s->x_is_fast ? a : b;
+            int64_t nx = (int64_t)cx + dx, ny = (int64_t)cy + dy;
+            uint32_t image = 0;
+            if (nx < 0 || nx >= s->nx) {
+                if (!along_x) continue;
+                image += nx < 0 ? 2 : 1;        /* the partner's image is at x - W or x + W */
+                nx = nx < 0 ? s->nx - 1 : 0;
+            }
+            if (ny < 0 || ny >= s->ny) {
+                if (!along_y) continue;
+                image += ny < 0 ? 6 : 3;
+                ny = ny < 0 ? s->ny - 1 : 0;
+            }
+            const uint32_t cell = cell_index(s, (uint32_t)nx, (uint32_t)ny);
+            if (cell < here) continue;
+            const struct stretch next = {s->cell_first[cell], s->cell_first[cell + 1], image};
+            struct stretch *before = count > 0 ? &out[count - 1] : NULL;
+            if (before && before->last == next.first && before->image == image) {
+                before->last = next.last;
+            } else {
+                out[count++] = next;
+            }
+        }
+    }
+    return count;
+}
+
+static void carry_contact(const struct md_scratch *s, uint32_t i, uint32_t j, struct link *link,
+                          double *spring)
+{
+    if (spring) *spring = 0;
+    for (uint32_t k = s->kept_first[i]; k < s->kept_first[i + 1]; k++) {
+        if (s->kept_partner[k] != j) continue;
+        link->j |= LINK_TOUCHES;
+        if (spring) *spring = s->kept_spring[k];
+        return;
+    }
+}
+
+/* Lists the links of strip t into its stretch of the scratch array: those within the strip from
+ * below, those to later strips from above.  False: no room. */
+static bool list_strip(struct md *md, uint32_t t)
+{
+    struct md_scratch *s = md->scratch;
+    const struct strip *strip = &md->strips[t];
+    const uint32_t begin = strip->first * s->links_per_grain;
+    const uint32_t room = (strip->last - strip->first) * s->links_per_grain;
+    uint32_t inner = 0, cross = 0, cell = NONE, stretches = 0;
+    struct stretch around[9];
+    for (uint32_t i = strip->first; i < strip->last; i++) {
+        const struct grain *g = &md->grains[i];
+        const uint32_t cx = cell_along(g->x - s->x0, s->per_x, s->nx);
+        const uint32_t cy = cell_along(g->y - s->y0, s->per_y, s->ny);
+        if (cell != cell_index(s, cx, cy)) {
+            cell = cell_index(s, cx, cy);
+            stretches = neighbourhood(md, cx, cy, around);
+        }
+        for (uint32_t r = 0; r < stretches; r++) {
+            const uint32_t first = around[r].first > i ? around[r].first : i + 1;
+            const double x = g->x - md->image_x[around[r].image];
+            const double y = g->y - md->image_y[around[r].image];
+            for (uint32_t j = first; j < around[r].last; j++) {
+                const struct grain *h = &md->grains[j];
+                const double dx = x - h->x, dy = y - h->y;
+                const double reach = g->radius + h->radius + md->skin;
+                if (dx * dx + dy * dy >= reach * reach) continue;
+                if (inner + cross == room) return false;
+                const bool crosses = j >= strip->last;
+                const uint32_t at = begin + (crosses ? room - ++cross : inner++);
+                s->links[at] = (struct link){i, j | around[r].image << LINK_IMAGE_SHIFT};
+                carry_contact(s, i, j, &s->links[at], s->springs ? &s->springs[at] : NULL);
+            }
+        }
+    }
+    s->inner[t] = inner;
+    s->cross[t] = cross;
+    return true;
+}
+
+static void move_links(struct md *md, uint32_t to, uint32_t from, uint32_t count)
+{
+    memcpy(md->links + to, md->scratch->links + from, count * sizeof *md->links);
+    if (!md->springs) return;
+    memcpy(md->springs + to, md->scratch->springs + from, count * sizeof *md->springs);
+}
+
+/* Pushes the stretches together: inner links of all strips, then all cross links. */
+static bool join_strips(struct md *md)
+{
+    struct md_scratch *s = md->scratch;
+    uint32_t inner = 0, cross = 0;
+    for (uint32_t t = 0; t < md->strip_count; t++) inner += s->inner[t];
+    md->cross_count = 0;
+    for (uint32_t t = 0; t < md->strip_count; t++) md->cross_count += s->cross[t];
+    if (md->cross_count > md->link_max / 2) return false;
+    md->link_count = inner + md->cross_count;
+    cross = inner;
+    inner = 0;
+    for (uint32_t t = 0; t < md->strip_count; t++) {
+        struct strip *strip = &md->strips[t];
+        const uint32_t begin = strip->first * s->links_per_grain;
+        const uint32_t end = strip->last * s->links_per_grain;
+        strip->link_first = inner;
+        strip->link_last = inner += s->inner[t];
+        strip->cross_first = cross;
+        strip->cross_last = cross += s->cross[t];
+        move_links(md, strip->link_first, begin, s->inner[t]);
+        move_links(md, strip->cross_first, end - s->cross[t], s->cross[t]);
+    }
+    return true;
+}
+
+static uint32_t strip_of(const struct md *md, uint32_t i)
+{
+    uint32_t t = (uint32_t)((uint64_t)i * md->strip_count / md->count);
+    while (i < md->strips[t].first) t--;
+    while (i >= md->strips[t].last) t++;
+    return t;
+}
+
+/* Sorts the cross links by the strip in which they end. */
+static void list_incoming(struct md *md)
+{
+    const uint32_t first = md->link_count - md->cross_count;
+    for (uint32_t t = 0; t < md->strip_count; t++) md->strips[t].in_last = 0;
+    for (uint32_t k = first; k < md->link_count; k++) {
+        md->strips[strip_of(md, md->links[k].j & LINK_INDEX)].in_last++;
+    }
+    uint32_t sum = 0;
+    for (uint32_t t = 0; t < md->strip_count; t++) {
+        const uint32_t count = md->strips[t].in_last;
+        md->strips[t].in_first = md->strips[t].in_last = sum;
+        sum += count;
+    }
+    for (uint32_t k = first; k < md->link_count; k++) {
+        const uint32_t t = strip_of(md, md->links[k].j & LINK_INDEX);
+        md->incoming[md->strips[t].in_last++] = k;
+    }
+}
+
+struct md_cells md_list_cells(const struct md *md)
+{
+    const struct md_scratch *s = md->scratch;
+    return (struct md_cells){s->x0, s->y0, s->per_x, s->per_y, s->nx, s->ny};
+}
+
+void md_list_cell(const struct md *md, uint32_t cx, uint32_t cy, uint32_t *first, uint32_t *last)
+{
+    const uint32_t cell = cell_index(md->scratch, cx, cy);
+    *first = md->scratch->cell_first[cell];
+    *last = md->scratch->cell_first[cell + 1];
+}
+
+static bool list_full(struct md *md, const char *what)
+{
+    md->broken = true;
+    md->fault = (struct fault){.time = md_time(md)};
+    snprintf(md->fault.text, sizeof md->fault.text, "t = %g: there is no room for more %s; grains "
+             "overlap far too much: make them stiffer (md.overlap) or set a smaller md.dt",
+             md->fault.time, what);
+    return false;
+}
+
+bool md_list_rebuild(struct md *md)
+{
+    struct md_scratch *s = md->scratch;
+    wrap(md);
+    lay_cells(md);
+    sort_grains(md);
+    keep_contacts(md);
+    permute(md);
+    cut_strips(md);
+    bool room = true;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(md->thread_count) \
+        if (md->strip_count > 1) reduction(&& : room)
+    for (uint32_t t = 0; t < md->strip_count; t++) room = list_strip(md, t) && room;
+    if (!room || !join_strips(md)) return list_full(md, "pairs of neighbours");
+    list_incoming(md);
+    if (!md_walls_list(md, s->order)) return list_full(md, "grains at walls");
+    md->travel = 0;
+    md->stale = false;
+    md->rebuilds++;
+    return true;
+}

@@ -1,0 +1,10 @@
+/* md_look.h - pictures of the present and sums over the grains; neither changes anything. */
+#ifndef MD_LOOK_H
+#define MD_LOOK_H
+
+#include "model/md/md.h"
+
+void md_look_observe(const void *state, struct grains *out);
+void md_look_count(const void *state, struct counters *out);
+
+#endif

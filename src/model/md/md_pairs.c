@@ -1,0 +1,180 @@
+/* md_pairs.c - forces between grains.
+ *
+ * Three short loops over a window that stays in the first cache level: which links touch; what
+ * the touching ones need, copied side by side; their forces, many at once by SIMD.  The last one
+ * is compiled for each combination of effects (STYLE rule 4) and for each width of SIMD unit.
+ */
+#include "model/md/md_pairs.h"
+
+#include <math.h>
+
+enum { HERTZ = 1, TANGENTIAL = 2, SPRING = 4, MASSES = 8, MIXTURE = 16 };
+
+/* A spring needs a tangential force, a mixture needs masses. */
+#define KERNELS(X) \
+    X(0) X(1) X(2) X(3) X(6) X(7) X(8) X(9) X(10) X(11) X(14) X(15) X(24) X(25) X(26) X(27) X(30) X(31)
+
+unsigned md_pairs_kernel(const struct md *md)
+{
+    unsigned kernel = 0;
+    if (md->law.hertz) kernel |= HERTZ;
+    if (md->law.tangential) kernel |= TANGENTIAL;
+    if (md->law.spring) kernel |= SPRING;
+    if (md->effects & (EFFECT_POLYDISPERSE | EFFECT_MIXTURE)) kernel |= MASSES;
+    if (md->effects & EFFECT_MIXTURE) kernel |= MIXTURE;
+    return kernel;
+}
+
+/* A contact began or ended: rare, so it may cost. */
+static void turn(struct md *md, uint32_t k, bool touches, struct strip_sums *sums)
+{
+    struct link *link = &md->links[k];
+    link->j ^= LINK_TOUCHES;
+    if (!touches) {
+        if (md->springs) md->springs[k] = 0;
+        return;
+    }
+    sums->begun++;
+    if (!md->collisions) return;
+    const uint32_t j = link->j & LINK_INDEX;
+#pragma omp atomic
+    md->collisions[link->i]++;
+#pragma omp atomic
+    md->collisions[j]++;
+}
+
+FORCE_INLINE void find(struct md *md, uint32_t first, uint32_t last, struct md_window *w,
+                       struct strip_sums *sums, bool periodic)
+{
+    const struct grain *const grains = md->grains;
+    const struct link *const links = md->links;
+    uint32_t n = 0;
+    for (uint32_t k = first; k < last; k++) {
+        const struct link link = links[k];
+        const uint32_t j = link.j & LINK_INDEX;
+        const struct grain *a = &grains[link.i], *b = &grains[j];
+        double dx = a->x - b->x, dy = a->y - b->y;
+        if (periodic) {
+            const uint32_t image = link.j >> LINK_IMAGE_SHIFT & 15;
+            dx -= md->image_x[image];
+            dy -= md->image_y[image];
+        }
+        const double reach = a->radius + b->radius, distance2 = dx * dx + dy * dy;
+        const bool touches = distance2 < reach * reach;
+        w->link[n] = k;
+        w->i[n] = link.i;
+        w->j[n] = j;
+        w->dx[n] = dx;
+        w->dy[n] = dy;
+        w->reach[n] = reach;
+        w->distance2[n] = distance2;
+        n += touches;
+        if (__builtin_expect(touches != (link.j >= LINK_TOUCHES), 0)) turn(md, k, touches, sums);
+    }
+    w->count = n;
+}
+
+FORCE_INLINE void gather(const struct md *md, struct md_window *w, unsigned kernel)
+{
+    const struct grain *const grains = md->grains;
+    for (uint32_t k = 0; k < w->count; k++) {
+        const struct grain *a = &grains[w->i[k]], *b = &grains[w->j[k]];
+        w->ux[k] = a->ux - b->ux;
+        w->uy[k] = a->uy - b->uy;
+        if (kernel & TANGENTIAL) w->rims[k] = a->rim + b->rim;
+        if (kernel & SPRING) w->spring[k] = md->springs[w->link[k]];
+        if (kernel & MASSES) w->inverse_mass[k] = a->inverse_mass + b->inverse_mass;
+        if (kernel & HERTZ) w->radius_product[k] = a->radius * b->radius;
+        if (kernel & MIXTURE) w->law[k] = *md_pair_law(md, a->species, b->species);
+    }
+}
+
+/* The laws of md_law.h, without a branch. */
+FORCE_INLINE uint64_t forces(const struct md *md, struct md_window *restrict w, unsigned kernel)
+{
+    const struct md_pair_law one = md->pairs[0];
+    const double least = md->law.clip ? 0 : -1e300, dt = md->dt;
+    const double inverse_mass = 2 * md->grains[0].inverse_mass, suspect = md->suspect_overlap;
+    const uint32_t count = w->count;
+    uint64_t suspects = 0;
+#pragma GCC ivdep
+    for (uint32_t k = 0; k < count; k++) {
+        const struct md_pair_law law = kernel & MIXTURE ? w->law[k] : one;
+        const double distance = sqrt(w->distance2[k]), inverse = 1 / distance;
+        const double nx = w->dx[k] * inverse, ny = w->dy[k] * inverse;
+        const double overlap = w->reach[k] - distance;
+        const double closing = -(w->ux[k] * nx + w->uy[k] * ny);
+        const double mass = 1 / (kernel & MASSES ? w->inverse_mass[k] : inverse_mass);
+        double stiffness = law.stiffness, damping = law.damping + law.damping_mass * sqrt(mass);
+        double normal;
+        if (kernel & HERTZ) {
+            const double root = sqrt(w->radius_product[k] / w->reach[k] * overlap);
+            stiffness *= root;
+            damping *= root;
+            normal = 2.0 / 3.0 * stiffness * overlap + damping * closing;
+        } else {
+            normal = stiffness * overlap + damping * closing;
+        }
+        normal = normal > least ? normal : least;
+        suspects += overlap > suspect;
+        double fx = normal * nx, fy = normal * ny;
+        if (kernel & TANGENTIAL) {
+            const double slip = w->uy[k] * nx - w->ux[k] * ny - w->rims[k];
+            const double drag = law.drag + law.drag_mass * mass + law.drag_share * damping;
+            const double limit = law.friction * (normal > 0 ? normal : 0);
+            double pull = -drag * slip, tangential;
+            if (kernel & SPRING) {
+                const double tangent = stiffness * law.tangent;
+                const double stretched = w->spring[k] + slip * dt;
+                pull -= tangent * stretched;
+                tangential = pull > limit ? limit : pull < -limit ? -limit : pull;
+                w->spring[k] = tangential == pull ? stretched : -tangential / tangent;
+            } else {
+                tangential = pull > limit ? limit : pull < -limit ? -limit : pull;
+            }
+            fx -= tangential * ny;
+            fy += tangential * nx;
+            w->ft[k] = -tangential;
+        }
+        w->fx[k] = fx;
+        w->fy[k] = fy;
+    }
+    return suspects;
+}
+
+FORCE_INLINE void window_of(struct md *md, uint32_t first, uint32_t last, struct md_window *w,
+                            struct strip_sums *sums, unsigned kernel)
+{
+    if (md->effects & EFFECT_PERIODIC) find(md, first, last, w, sums, true);
+    else find(md, first, last, w, sums, false);
+    gather(md, w, kernel);
+    sums->suspect += forces(md, w, kernel);
+    if (kernel & SPRING) {
+        for (uint32_t k = 0; k < w->count; k++) md->springs[w->link[k]] = w->spring[k];
+    }
+    if (kernel & TANGENTIAL) sums->tangential += w->count;
+}
+
+typedef void kernel_function(struct md *, uint32_t, uint32_t, struct md_window *,
+                             struct strip_sums *);
+
+#define X(kernel)                                                                           \
+    CLONES static void kernel_##kernel(struct md *md, uint32_t first, uint32_t last,        \
+                                       struct md_window *w, struct strip_sums *sums)        \
+    {                                                                                       \
+        window_of(md, first, last, w, sums, kernel);                                        \
+    }
+KERNELS(X)
+#undef X
+
+static kernel_function *const kernels[] = {
+#define X(kernel) [kernel] = kernel_##kernel,
+    KERNELS(X)
+#undef X
+};
+
+void md_pairs_window(struct md *md, uint32_t first, uint32_t last, struct md_window *window,
+                     struct strip_sums *sums)
+{
+    kernels[md->kernel](md, first, last, window, sums);
+}

@@ -1,0 +1,31 @@
+/* build.c - see build.h.  The versions are those of the libraries that run, where they tell. */
+#include "run/build.h"
+
+#include <libconfig.h>
+#include <omp.h>
+#include <png.h>
+
+#include <fftw3.h>
+#include <ft2build.h>
+#include FT_FREETYPE_H
+
+const char *const build_version = SANDREEL_VERSION;
+
+static json_t *freetype_version(void)
+{
+    FT_Library library;
+    int major = 0, minor = 0, patch = 0;
+    if (FT_Init_FreeType(&library) == 0) {
+        FT_Library_Version(library, &major, &minor, &patch);
+        FT_Done_FreeType(library);
+    }
+    return json_sprintf("%d.%d.%d", major, minor, patch);
+}
+
+json_t *build_versions(void)
+{
+    return json_pack("{s:s, s:s, s:s, s:o, s:s, s:s, s:s, s:i}",
+        "sandreel", build_version, "compiler", __VERSION__, "libpng", png_get_libpng_ver(NULL),
+        "freetype", freetype_version(), "fftw", fftw_version, "jansson", jansson_version_str(),
+        "libconfig", SANDREEL_LIBCONFIG, "openmp", _OPENMP);
+}

@@ -1,0 +1,53 @@
+/* film.h - frames with one look: painter, picture and colour range, from the first to the last.
+ *
+ * Colours mean the same in every frame of a film.  A range that the scene fixes is there from the
+ * start; otherwise the film is shown all its frames first (film_gather) and takes the 99th
+ * percentile, so that a few fast grains do not darken all others.
+ */
+#ifndef FILM_H
+#define FILM_H
+
+#include "draw/painter.h"
+#include "measure/map.h"
+#include "measure/quantile.h"
+#include "model/model.h"
+#include "run/encoder.h"
+
+enum { FILM_VARIABLES = 6 };
+
+struct film {
+    const struct scene *scene;
+    const struct model *model;
+    struct view     view;
+    struct painter *painter;
+    struct image    image;              /* the last frame drawn */
+    struct map     *map;                /* of the field beneath the grains; NULL: none */
+    int             map_kind;
+    double          range[2], field_range[2];   /* NANs: each frame its own */
+    struct quantile values, field_values;       /* of all frames gathered so far */
+    struct painter_variable variables[FILM_VARIABLES];
+};
+
+/* `view` is copied. */
+bool film_open(struct film *film, const struct scene *scene, const struct model *model,
+               const struct view *view, struct error *error);
+void film_close(struct film *film);
+
+/* Must the whole film be seen before its first frame can be coloured? */
+bool film_needs_gathering(const struct film *film);
+
+/* Does the look need contacts in the grains it is given? */
+bool film_needs_contacts(const struct view *view);
+
+/* Shows it one frame's grains, in any order; film_settle() then sets the ranges. */
+bool film_gather(struct film *film, const struct grains *grains, struct error *error);
+void film_settle(struct film *film);
+
+/* Draws into film->image.  `steps` and `wall` fill the variables {steps} and {wall} of labels. */
+bool film_draw(struct film *film, const struct grains *grains, uint64_t steps, double wall,
+               struct error *error);
+
+/* What a PNG file of this frame tells about itself. */
+void film_describe(const struct film *film, double time, struct encoder_job *job);
+
+#endif

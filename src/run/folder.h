@@ -1,0 +1,27 @@
+/* folder.h - the directory of a run: where everything lies, and who may write there. */
+#ifndef FOLDER_H
+#define FOLDER_H
+
+#include "base/error.h"
+#include "base/file.h"
+
+#include <stdint.h>
+
+/* Joins `directory` and a printf'ed name into `path`; returns path. */
+char *folder_path(char path[FILE_PATH_MAX], const char *directory, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* "NAME-MODEL", or with "-2", "-3", ... behind when that is taken. */
+void folder_choose(char path[FILE_PATH_MAX], const char *name, const char *model);
+
+/* Makes the directory.  One that is there and not empty is refused unless `force`; then what a
+ * former run left in it (and nothing else) is removed. */
+bool folder_claim(const char *directory, bool force, struct error *error);
+
+/* Removes the files of a run from one of its folders, and the folder if nothing is left. */
+void folder_clear(const char *directory, const char *name);
+
+/* Removes directory/name, a file of the run. */
+void folder_remove(const char *directory, const char *name);
+
+#endif

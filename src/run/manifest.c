@@ -1,0 +1,94 @@
+/* manifest.c - see manifest.h. */
+#include "run/manifest.h"
+
+#include "run/build.h"
+#include "run/folder.h"
+
+#include <inttypes.h>
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static json_t *hash_word(uint64_t hash)
+{
+    return json_sprintf("%016" PRIx64, hash);
+}
+
+static json_t *number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *counts(const struct run_result *result)
+{
+    json_t *list = json_object();
+#define X(name, doc) \
+    json_object_set_new(list, #name, json_integer((json_int_t)result->counters.name));
+    COUNTERS(X)
+#undef X
+    json_object_set_new(list, "frames", json_integer((json_int_t)result->frames));
+    json_object_set_new(list, "maps", json_integer((json_int_t)result->maps));
+    json_object_set_new(list, "log_rows", json_integer((json_int_t)result->log_rows));
+    return list;
+}
+
+static json_t *seconds(const struct run_result *result)
+{
+    json_t *list = json_object();
+    double cpu = 0;
+    for (int p = 0; p < PART_COUNT; p++) {
+        const double mine = p == PART_encode ? result->cpu_encode : result->parts.cpu[p];
+        cpu += mine;
+        json_object_set_new(list, parts_name((enum part)p),
+                            json_pack("{s:f, s:f}", "wall", result->parts.wall[p], "cpu", mine));
+    }
+    json_object_set_new(list, "total",
+                        json_pack("{s:f, s:f}", "wall", result->wall, "cpu", cpu));
+    return list;
+}
+
+static json_t *describe(const struct manifest *manifest)
+{
+    const struct scene *scene = manifest->scene;
+    char when[32];
+    const time_t now = time(NULL);
+    strftime(when, sizeof when, "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
+    json_t *root = json_pack("{s:s, s:s, s:s, s:s, s:I, s:s, s:o, s:o}",
+        "status", manifest->status, "scene", scene->name, "title", scene->title,
+        "model", manifest->model->name, "seed", (json_int_t)scene->seed,
+        "written", when, "scene_hash", hash_word(manifest->scene_hash),
+        "versions", build_versions());
+    const struct run_result *result = manifest->result;
+    if (!root || !result) return root;
+    json_object_set_new(root, "time", number(result->counters.time));
+    json_object_set_new(root, "until", number(scene->until));
+    json_object_set_new(root, "state_digest", hash_word(result->digest));
+    json_object_set_new(root, "range", json_pack("[o, o]", number(result->range[0]),
+                                                 number(result->range[1])));
+    json_object_set_new(root, "color", json_integer(scene->view.color));
+    json_object_set_new(root, "counts", counts(result));
+    json_object_set_new(root, "seconds", seconds(result));
+    return root;
+}
+
+bool manifest_save(const struct manifest *manifest, const char *directory, struct error *error)
+{
+    char path[FILE_PATH_MAX];
+    folder_path(path, directory, "manifest.json");
+    json_t *root = describe(manifest);
+    char *text = root ? json_dumps(root, JSON_INDENT(4) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(9))
+                      : NULL;
+    json_decref(root);
+    if (!text) return error_set(error, "%s: cannot be put together (a name that is not UTF-8?)", path);
+    struct file file;
+    bool done = file_begin(&file, path, error);
+    if (done) {
+        fprintf(file.stream, "%s\n", text);
+        done = file_commit(&file, error);
+    }
+    free(text);
+    return done;
+}

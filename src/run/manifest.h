@@ -1,0 +1,17 @@
+/* manifest.h - manifest.json: what a run was made of and with, and what it cost. */
+#ifndef MANIFEST_H
+#define MANIFEST_H
+
+#include "run/run.h"
+
+struct manifest {
+    const struct scene *scene;
+    const struct model *model;
+    const char *status;         /* "running", "done", "interrupted", "stopped", "broken", ... */
+    uint64_t scene_hash;
+    const struct run_result *result;    /* NULL while it runs */
+};
+
+bool manifest_save(const struct manifest *manifest, const char *directory, struct error *error);
+
+#endif

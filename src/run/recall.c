@@ -1,0 +1,36 @@
+/* recall.c - see recall.h. */
+#include "run/recall.h"
+
+#include "run/folder.h"
+#include "run/setup.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+json_t *recall_manifest(const char *run, struct error *error)
+{
+    char path[FILE_PATH_MAX];
+    size_t size;
+    char *text = file_load(folder_path(path, run, "manifest.json"), 1 << 24, &size, error);
+    if (!text) return NULL;
+    json_error_t cause;
+    json_t *root = json_loadb(text, size, 0, &cause);
+    free(text);
+    if (!root) error_set(error, "%s:%d: not a manifest: %s", path, cause.line, cause.text);
+    return root;
+}
+
+void recall_range(const char *run, const struct scene *scene, struct view *view)
+{
+    if (!setup_is_run(run) || !isnan(view->range[0])) return;
+    struct error ignored;
+    json_t *root = recall_manifest(run, &ignored);
+    const json_t *range = json_object_get(root, "range"), *color = json_object_get(root, "color");
+    const json_t *low = json_array_get(range, 0), *high = json_array_get(range, 1);
+    if (json_is_number(low) && json_is_number(high) && scene->view.range_from == RANGE_RUN
+        && json_is_integer(color) && json_integer_value(color) == view->color) {
+        view->range[0] = json_number_value(low);
+        view->range[1] = json_number_value(high);
+    }
+    json_decref(root);
+}

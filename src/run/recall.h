@@ -1,0 +1,16 @@
+/* recall.h - what an earlier run remembers in its manifest.json. */
+#ifndef RECALL_H
+#define RECALL_H
+
+#include "scene/scene.h"
+
+#include <jansson.h>
+
+/* The manifest as JSON, a new reference; NULL with the cause. */
+json_t *recall_manifest(const char *run, struct error *error);
+
+/* If `run` is a run whose grains were coloured as `view` wants it and view->range is open, takes the
+ * range of that run. */
+void recall_range(const char *run, const struct scene *scene, struct view *view);
+
+#endif
