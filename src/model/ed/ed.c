@@ -42,7 +42,9 @@ static bool take_arrays(struct ed *ed)
         && arena_array(arena, &ed->spin, spins ? n : 0)
         && arena_array(arena, &ed->angle, spins ? n : 0)
         && arena_array(arena, &ed->contacts, rates ? n : 0)
-        && arena_array(arena, &ed->rate, rates ? n : 0);
+        && arena_array(arena, &ed->rate, rates ? n : 0)
+        && arena_array(arena, &ed->cursors, ed->scene->source_count)
+        && arena_array(arena, &ed->batch, ed->batch_max);
 }
 
 static bool make_cells(struct ed *ed)
@@ -52,6 +54,7 @@ static bool make_cells(struct ed *ed)
     struct ed_grid grid = {
         .reach = d * (1 + 1e-6), .margin = ed->settings.margin,
         .wraps_x = scene->left == BORDER_PERIODIC, .wraps_y = scene->bottom == BORDER_PERIODIC,
+        .beyond = 2 * scene->radius_max,
         .shut_west = scene->left == BORDER_WALL, .shut_east = scene->right == BORDER_WALL,
         .shut_south = scene->bottom == BORDER_WALL, .shut_north = scene->top == BORDER_WALL
     };
@@ -137,7 +140,7 @@ static void start_anew(struct ed *ed)
     ed_queue_rebuild(&ed->queue, ed->events, 0, 0, first_width(ed));
     ed->clock.stuck_events = 0;
     ed->clock.stuck_mark = 0;
-    ed->kernels->predict_all(ed);
+    ed_epoch_predict(ed);
 }
 
 static const struct ed_kernels *choose_kernels(void)
@@ -168,6 +171,7 @@ static void *ed_create(const struct scene *scene, struct error *error)
     ed->settings = ed_settings_of(scene);
     ed->effects = scene->effects;
     ed->count_max = capacity(scene);
+    ed->batch_max = scene->source_count ? source_batch_max(scene) : 0;
     ed->gx = scene->gravity[0];
     ed->gy = scene->gravity[1];
     ed->radius_one = scene->radius_min;
@@ -299,6 +303,7 @@ static void ed_archive(void *state, struct archive *archive)
     archive_array(archive, "ed.angle", ed->angle, ed->count);
     archive_array(archive, "ed.contacts", ed->contacts, ed->count);
     archive_array(archive, "ed.rate", ed->rate, ed->count);
+    archive_array(archive, "ed.cursors", ed->cursors, ed->scene->source_count);
     tally_archive(&ed->tally, archive);
     const bool same = !loads || ed->clock.fingerprint == own;
     if (same) {
@@ -308,7 +313,7 @@ static void ed_archive(void *state, struct archive *archive)
     if (!loads || archive->failed) return;
     ed->fault = (struct fault){0};
     ed->clock.fingerprint = own;
-    if (!had_rates) ed->clock.rate_from = ed->clock.present;
+    if (ed->rate && !had_rates) ed->clock.rate_from = ed->clock.present;
     if (!same) {
         start_anew(ed);
         return;
@@ -362,7 +367,7 @@ const struct model model_ed = {
     .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_ROTATION | EFFECT_FRICTION
               | EFFECT_POLYDISPERSE | EFFECT_MIXTURE | EFFECT_PERIODIC | EFFECT_WALLS
               | EFFECT_MOVING_WALLS | EFFECT_GATES | EFFECT_OBSTACLE | EFFECT_OUTFLOW
-              | EFFECT_SCREEN | EFFECT_COLLISION_RATE,
+              | EFFECT_INFLOW | EFFECT_SCREEN | EFFECT_COLLISION_RATE,
     .settings = &ed_settings_group,
     .resolve  = ed_settings_resolve,
     .memory   = ed_memory,

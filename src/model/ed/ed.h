@@ -23,6 +23,7 @@
 #include "model/ed/ed_settings.h"
 #include "model/ed/ed_walls.h"
 #include "model/model.h"
+#include "model/source.h"
 
 /* Where a grain flies; see above. */
 struct ed_grain { double x, y, vx, vy; };
@@ -55,6 +56,7 @@ struct ed_clock {
     uint64_t events, crossings, stale, collisions, elastic, wall_contacts, epochs;
     uint64_t grains_in, grains_out, refused;
     double   rate_from;         /* scene time at which the window of the collision rate began */
+    double   retry;             /* scene time before which waiting grains do not try again */
     uint64_t fingerprint;       /* of what the predictions were made for */
 };
 
@@ -66,7 +68,7 @@ enum { ED_KERNEL_SIZES = 1, ED_KERNEL_SOLIDS = 2, ED_KERNEL_SPINS = 4, ED_KERNEL
 /* The loop over events, compiled for every set of these three: grains of several sizes; walls,
  * gravity, sensors or open borders; spins. */
 struct ed_kernels {
-    void (*predict_all)(struct ed *ed);
+    void (*predict_one)(struct ed *ed, uint32_t i);
     enum ed_stop (*run[ED_KERNEL_COUNT])(struct ed *ed, double limit, uint64_t *budget);
 };
 
@@ -101,6 +103,9 @@ struct ed {
     struct ed_walls walls;
     struct ed_clock clock;
     struct tally    tally;
+    struct source_cursor *cursors;      /* with INFLOW, one for each source */
+    struct source_grain  *batch;
+    uint32_t batch_max;
     struct fault    fault;
     const struct ed_kernels *kernels;
     uint32_t kernel;            /* the one of them for this scene */

@@ -13,16 +13,19 @@ static uint32_t axis_count(double length, double width)
     return (uint32_t)fmin(fmax(floor(length / width), 1), AXIS_MAX);
 }
 
-/* Where a grain leaves each cell of an axis: the edges, pushed out by the margin. */
+/* Where a grain leaves each cell of an axis: the edges, pushed out by the margin, the outermost
+ * ones by their own. */
 static void lay_faces(double *low, double *high, uint32_t n, double origin, double width,
-                      double margin, bool shut_low, bool shut_high)
+                      double margin, double low_end, double high_end)
 {
     for (uint32_t c = 0; c < n + 2; c++) {
         low[c] = origin + (c - 1.0) * width - margin;
         high[c] = origin + c * width + margin;
     }
-    if (shut_low) low[1] = -INFINITY;
-    if (shut_high) high[n] = INFINITY;
+    if (isfinite(low_end)) low[1] = origin - low_end;
+    else low[1] = -INFINITY;
+    if (isfinite(high_end)) high[n] = origin + n * width + high_end;
+    else high[n] = INFINITY;
 }
 
 bool ed_cells_create(struct ed_cells *cells, const struct ed_grid *grid, uint32_t count_max,
@@ -49,10 +52,13 @@ bool ed_cells_create(struct ed_cells *cells, const struct ed_grid *grid, uint32_
         || !arena_array(arena, &cells->north, cells->ny + 2)) return false;
     const double spare_x = fmax(cells->width_x - grid->reach, 0),
                  spare_y = fmax(cells->width_y - grid->reach, 0);
-    lay_faces(cells->west, cells->east, cells->nx, cells->x0, cells->width_x,
-              0.5 * grid->margin * spare_x, grid->shut_west, grid->shut_east);
-    lay_faces(cells->south, cells->north, cells->ny, cells->y0, cells->width_y,
-              0.5 * grid->margin * spare_y, grid->shut_south, grid->shut_north);
+    const double mx = 0.5 * grid->margin * spare_x, my = 0.5 * grid->margin * spare_y;
+    const double open_x = grid->wraps_x ? mx : grid->beyond,
+                 open_y = grid->wraps_y ? my : grid->beyond;
+    lay_faces(cells->west, cells->east, cells->nx, cells->x0, cells->width_x, mx,
+              grid->shut_west ? INFINITY : open_x, grid->shut_east ? INFINITY : open_x);
+    lay_faces(cells->south, cells->north, cells->ny, cells->y0, cells->width_y, my,
+              grid->shut_south ? INFINITY : open_y, grid->shut_north ? INFINITY : open_y);
     ed_cells_clear(cells);
     return true;
 }

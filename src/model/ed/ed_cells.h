@@ -35,6 +35,7 @@ struct ed_cells {
  * the spare width, which sides are periodic, and which are shut so that nobody leaves there. */
 struct ed_grid {
     double   box[4], reach, width, margin;
+    double   beyond;            /* how far outside of an open side a grain is gone */
     uint32_t cells_max;
     bool     wraps_x, wraps_y, shut_west, shut_east, shut_south, shut_north;
 };

@@ -141,9 +141,95 @@ static double wall_change(const struct ed *ed)
     return walls->change < walls->change_count ? walls->changes[walls->change] : INFINITY;
 }
 
+/* When the next grain wants in. */
+static double inflow_due(const struct ed *ed)
+{
+    double due = INFINITY;
+    for (uint32_t s = 0; ed->cursors && s < ed->scene->source_count; s++) {
+        due = fmin(due, source_due(ed->scene, s, &ed->cursors[s]));
+    }
+    return fmax(due, ed->clock.retry);
+}
+
+/* Would it overlap a grain that is there?  All are asked: grains enter seldom. */
+static bool has_room(const struct ed *ed, const struct source_grain *grain)
+{
+    for (uint32_t i = 0; i < ed->count; i++) {
+        const struct ed_path p = ed_walls_path(ed, i);
+        const double reach = ed_radius(ed, i) + grain->radius;
+        const double dx = p.x - grain->x, dy = p.y - grain->y;
+        if (dx * dx + dy * dy < reach * reach) return false;
+    }
+    return true;
+}
+
+static void add_grain(struct ed *ed, const struct source_grain *grain)
+{
+    const uint32_t i = ed->count++;
+    const double t = ed->clock.now, vx = grain->vx - ed->gx * t, vy = grain->vy - ed->gy * t;
+    ed->grains[i] = (struct ed_grain){grain->x - t * (vx + 0.5 * ed->gx * t),
+                                      grain->y - t * (vy + 0.5 * ed->gy * t), vx, vy};
+    struct ed_event *e = &ed->events[i];
+    *e = (struct ed_event){INFINITY, INFINITY, ED_NOBODY, 0, 0, -INFINITY};
+    ed->id[i] = ed->next_id++;
+    const double mass = scene_mass(&ed->scene->species[grain->species], grain->radius);
+    if (ed->species) ed->species[i] = grain->species;
+    if (ed->radius) {
+        ed->radius[i] = grain->radius;
+        ed->mass[i] = mass;
+    }
+    if (ed->spin) ed->spin[i] = ed->angle[i] = 0;
+    if (ed->contacts) {
+        ed->contacts[i] = 0;
+        ed->rate[i] = 0;
+    }
+    ed_cells_place(&ed->cells, grain->x, grain->y, &e->cx, &e->cy);
+    ed_cells_put(&ed->cells, ed_cells_index(&ed->cells, e->cx, e->cy), i);
+    ed->kernels->predict_one(ed, i);
+    ed->clock.grains_in++;
+    ed->tally.mass_in += mass;
+}
+
+/* Lets one batch in.  A grain of a point source waits for room; one of a stream that finds none is
+ * refused, since the stream would run into it. */
+static bool let_batch_in(struct ed *ed, uint32_t s, double t)
+{
+    struct source_cursor *cursor = &ed->cursors[s];
+    const struct source *source = &ed->scene->sources[s];
+    const uint32_t count = source_batch(ed->scene, s, cursor->next, ed->batch, ed->batch_max);
+    if (ed->count + count > ed->count_max) return false;
+    for (uint32_t k = 0; k < count; k++) {
+        if (source->count > 0 && cursor->made >= source->count) break;
+        const bool waits = source->kind == SOURCE_POINT;
+        const struct source_grain grain = waits ? ed->batch[k]
+                                                : source_flown(ed->scene, &ed->batch[k], t);
+        const bool room = has_room(ed, &grain);
+        if (waits && !room) return false;
+        if (room) add_grain(ed, &grain);
+        else ed->clock.refused++;
+        cursor->made++;
+    }
+    cursor->next++;
+    return true;
+}
+
+/* A grain without room tries again after a tenth of its source's interval, or of the run's
+ * hundredth part. */
+static void let_in(struct ed *ed, double t)
+{
+    for (uint32_t s = 0; s < ed->scene->source_count; s++) {
+        while (source_due(ed->scene, s, &ed->cursors[s]) <= t) {
+            if (let_batch_in(ed, s, t)) continue;
+            const double rate = ed->scene->sources[s].rate;
+            ed->clock.retry = t + 0.1 * (rate > 0 ? 1 / rate : ed->scene->until / 100);
+            break;
+        }
+    }
+}
+
 double ed_change_next(const struct ed *ed)
 {
-    return fmin(rate_end(ed), wall_change(ed));
+    return fmin(fmin(rate_end(ed), wall_change(ed)), inflow_due(ed));
 }
 
 void ed_change_apply(struct ed *ed, double t)
@@ -160,6 +246,10 @@ void ed_change_apply(struct ed *ed, double t)
         ed->walls.change++;
         ed->clock.now = fmax(ed->clock.now, ed_since_epoch(&ed->clock, t));
         ed_epoch_begin(ed);
-        ed->kernels->predict_all(ed);
+        ed_epoch_predict(ed);
+    }
+    if (inflow_due(ed) <= t) {
+        ed->clock.now = fmax(ed->clock.now, ed_since_epoch(&ed->clock, t));
+        let_in(ed, t);
     }
 }

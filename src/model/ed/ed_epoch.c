@@ -166,3 +166,8 @@ void ed_epoch_begin(struct ed *ed)
     if (span > 0 && events > ed->count) width = ED_BUCKET_FILL * span / events;
     ed_queue_rebuild(&ed->queue, ed->events, ed->count, 0, width);
 }
+
+void ed_epoch_predict(struct ed *ed)
+{
+    for (uint32_t i = 0; i < ed->count; i++) ed->kernels->predict_one(ed, i);
+}

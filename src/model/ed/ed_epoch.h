@@ -13,6 +13,9 @@ void ed_epoch_begin(struct ed *ed);
 /* Puts every grain into the cell where it is now. */
 void ed_epoch_file(struct ed *ed);
 
+/* Makes every event anew. */
+void ed_epoch_predict(struct ed *ed);
+
 /* Copies all that belongs to one grain. */
 void ed_epoch_copy(struct ed *ed, uint32_t to, uint32_t from);
 

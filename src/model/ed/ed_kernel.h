@@ -404,15 +404,13 @@ FORCE_INLINE enum ed_stop run(struct ed *ed, double limit, uint64_t *budget, int
 KERNEL(0) KERNEL(1) KERNEL(2) KERNEL(3) KERNEL(4) KERNEL(5) KERNEL(6) KERNEL(7)
 #undef KERNEL
 
-/* Makes every event anew, at the present. */
-static void predict_all(struct ed *ed)
+/* Makes a grain's event anew, at the present. */
+static void predict_one(struct ed *ed, uint32_t i)
 {
-    for (uint32_t i = 0; i < ed->count; i++) {
-        if (ed->radius) predict(ed, i, WITH_SOLIDS | WITH_SIZES);
-        else predict(ed, i, WITH_SOLIDS);
-    }
+    if (ed->radius) predict(ed, i, WITH_SOLIDS | WITH_SIZES);
+    else predict(ed, i, WITH_SOLIDS);
 }
 
 const struct ed_kernels KERNEL_SET = {
-    predict_all, {run_0, run_1, run_2, run_3, run_4, run_5, run_6, run_7}
+    predict_one, {run_0, run_1, run_2, run_3, run_4, run_5, run_6, run_7}
 };
