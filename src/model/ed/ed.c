@@ -132,6 +132,9 @@ static void start_anew(struct ed *ed)
 {
     struct ed_walls *walls = &ed->walls;
     ed->clock.now = ed_since_epoch(&ed->clock, ed->clock.present);
+    ed_epoch_shift(ed);                                 /* still under the gravity before */
+    ed->clock.gx = ed->gx;
+    ed->clock.gy = ed->gy;
     walls->change = 0;
     while (walls->change < walls->change_count
            && walls->changes[walls->change] <= ed->clock.present) walls->change++;

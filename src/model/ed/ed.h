@@ -55,6 +55,7 @@ struct ed_clock {
     uint64_t epoch_events;      /* events since the epoch */
     uint64_t events, crossings, stale, collisions, elastic, wall_contacts, epochs;
     uint64_t grains_in, grains_out, refused;
+    double   gx, gy;            /* gravity under which the grains fly */
     double   rate_from;         /* scene time at which the window of the collision rate began */
     double   retry;             /* scene time before which waiting grains do not try again */
     uint64_t fingerprint;       /* of what the predictions were made for */

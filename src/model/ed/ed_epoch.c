@@ -50,16 +50,16 @@ static void clock_add(struct ed_clock *clock, double t)
     clock->epoch = sum;
 }
 
-static void shift_time(struct ed *ed)
+void ed_epoch_shift(struct ed *ed)
 {
-    const double t = ed->clock.now;
+    const double t = ed->clock.now, gx = ed->clock.gx, gy = ed->clock.gy;
     for (uint32_t i = 0; i < ed->count; i++) {
         struct ed_grain *g = &ed->grains[i];
         struct ed_event *e = &ed->events[i];
-        g->x += t * (g->vx + 0.5 * ed->gx * t);
-        g->y += t * (g->vy + 0.5 * ed->gy * t);
-        g->vx += ed->gx * t;
-        g->vy += ed->gy * t;
+        g->x += t * (g->vx + 0.5 * gx * t);
+        g->y += t * (g->vy + 0.5 * gy * t);
+        g->vx += gx * t;
+        g->vy += gy * t;
         e->contact -= t;
         e->due -= t;
         e->last -= t;
@@ -155,7 +155,7 @@ void ed_epoch_begin(struct ed *ed)
 {
     struct ed_clock *clock = &ed->clock;
     const double span = clock->now, events = (double)clock->epoch_events;
-    shift_time(ed);
+    ed_epoch_shift(ed);
     sort_in_space(ed);
     ed_walls_refresh(ed);
     take_measures(ed);

@@ -10,6 +10,9 @@ struct ed;
  * measures of time and speed are taken anew, and the calendar is rebuilt. */
 void ed_epoch_begin(struct ed *ed);
 
+/* The first part of it: tells positions, velocities and events from the present. */
+void ed_epoch_shift(struct ed *ed);
+
 /* Puts every grain into the cell where it is now. */
 void ed_epoch_file(struct ed *ed);
 
