@@ -146,12 +146,14 @@ static void start_anew(struct ed *ed)
     ed_epoch_predict(ed);
 }
 
-static const struct ed_kernels *choose_kernels(void)
+static const struct ed_kernels *choose_kernels(const struct ed_settings *settings)
 {
 #if defined __x86_64__ && defined __GNUC__
-    const char *wish = getenv("SANDREEL_SIMD");
-    const bool plain = wish && strcmp(wish, "none") == 0;
-    if (!plain && __builtin_cpu_supports("avx2")) return &ed_kernel_avx2;
+    if (settings->vectors == ED_VECTORS_AUTO && __builtin_cpu_supports("avx2")) {
+        return &ed_kernel_avx2;
+    }
+#else
+    (void)settings;
 #endif
     return &ed_kernel_portable;
 }
@@ -180,7 +182,7 @@ static void *ed_create(const struct scene *scene, struct error *error)
     ed->radius_one = scene->radius_min;
     ed->diameter2 = 4 * scene->radius_min * scene->radius_min;
     ed->mass_one = scene_mass(&scene->species[0], scene->radius_min);
-    ed->kernels = choose_kernels();
+    ed->kernels = choose_kernels(&ed->settings);
     ed->kernel = (scene->effects & (EFFECT_POLYDISPERSE | EFFECT_MIXTURE) ? ED_KERNEL_SIZES : 0u)
                | (has_solids(scene) ? ED_KERNEL_SOLIDS : 0u)
                | (scene->effects & (EFFECT_FRICTION | EFFECT_ROTATION) ? ED_KERNEL_SPINS : 0u);

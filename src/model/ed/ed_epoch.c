@@ -15,8 +15,11 @@
  * sixteen. */
 static const double way_max = 1e4;
 
-/* Relative velocities below this share of the greatest speed are rounding. */
-static const double noise_share = 1e-15;
+/* Relative velocities below this share of the greatest speed are rounding.  Where grains rest
+ * under gravity, what rattles with less than a share of sqrt(g d) rests too: a row of grains that
+ * just fits between two walls would otherwise rattle without time going on.  At that speed an
+ * overlap takes 1e4 free falls through a grain to grow to 1e-9. */
+static const double noise_share = 1e-15, noise_at_rest = 1e-13;
 
 /* Time counts as stuck if 2e6 events bring it on by less than this share of a grain's diameter
  * over its speed. */
@@ -132,7 +135,7 @@ static void take_measures(struct ed *ed)
     }
     const double fastest = fmax(sqrt(max2), walls);
     const double typical = fmax(fmax(sqrt(sum2 / fmax(ed->count, 1)), sqrt(g * d)), walls);
-    clock->noise = noise_share * fmax(fastest, 0.01 * sqrt(g * d));
+    clock->noise = fmax(noise_share * fastest, noise_at_rest * sqrt(g * d));
     clock->stuck_step = typical > 0 ? stuck_share * d / typical : 0;
     /* v t + g t^2 / 2 = way, in the form that does not cancel. */
     const double way = way_max * d, speed = fmax(fastest, typical);

@@ -29,6 +29,8 @@ static const struct key keys[] = {
     {"margin", KEY_REAL, AT(margin), "0.5", 0, 1, "1", NULL,
      "how far a grain may leave its cell, as a share of what the cell is wider than a grain; "
      "changes the speed only"},
+    {"vectors", KEY_CHOICE, AT(vectors), "auto", NAN, NAN, NULL, "auto|none",
+     "auto: the processor's vector instructions if it has them; changes the speed only"},
 };
 
 const struct key_group ed_settings_group = {

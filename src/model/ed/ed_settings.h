@@ -4,6 +4,8 @@
 
 #include "scene/scene.h"
 
+enum ed_vectors { ED_VECTORS_AUTO, ED_VECTORS_NONE };
+
 struct ed_settings {
     double t_c;                 /* TC rule: after a contact a grain stays elastic for so long */
     double tangential;          /* beta0, largest tangential restitution */
@@ -11,6 +13,7 @@ struct ed_settings {
     double exponent;            /* 1 - r grows with impact speed to this power; 0: constant r */
     double reference_speed;     /* at which r is the species' restitution */
     double cell;                /* width of a cell in largest diameters; NAN: chosen */
+    int    vectors;             /* enum ed_vectors */
     double margin;              /* how far a grain may leave its cell, share of the spare width */
 };
 
