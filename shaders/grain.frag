@@ -4,7 +4,7 @@
 flat in vec3 disc;
 flat in vec3 disc_color;
 
-uniform vec2 style;                     // rims, shading: 0 or 1
+uniform vec2 style;                     // strength of rims, of shading
 
 out vec4 sum;
 
@@ -32,12 +32,12 @@ void main()
 
     vec2 u = p / r - vec2(-0.32, 0.38);
     float q = dot(u, u);
-    float shade = style.y * clamp((r - 1.2) * 0.5, 0.0, 1.0);
+    float shade = style.y * clamp(r - 1.2, 0.0, 1.0);
     float s = max(1.0 - 3.2 * q, 0.0);
     float spot = 0.42 * s * s * shade;
     float light = (1.0 + (1.07 - 0.24 * q - 1.0) * shade) * (1.0 - spot);
 
     float rim_from = edge - 0.5 - clamp(0.11 * r, 0.8, 2.5);
-    float rim = style.x * 0.52 * clamp((r - 2.5) * 0.4, 0.0, 1.0) * clamp(d - rim_from, 0.0, 1.0);
+    float rim = style.x * 0.52 * clamp(r - 1.2, 0.0, 1.0) * clamp(d - rim_from, 0.0, 1.0);
     sum = vec4((disc_color * light + spot) * (1.0 - rim) * a, a);
 }

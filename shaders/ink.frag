@@ -44,6 +44,9 @@ void main()
     else if (kind < 1.5) cover = clamp(0.5 - arc_distance(local.xy), 0.0, 1.0);
     else if (kind < 2.5) cover = clamp(0.5 - arrow_distance(local.xy), 0.0, 1.0);
     else if (kind < 3.5) cover = clamp(0.5 + min(min(local.x, local.y), local.z), 0.0, 1.0);
-    else cover = pow(texelFetch(glyphs, ivec2(local.xy), 0).r, shape.x);
+    else {
+        cover = texelFetch(glyphs, ivec2(local.xy), 0).r;
+        cover += shape.x * cover * (1.0 - cover);
+    }
     pixel_color = vec4(color.rgb, color.a * cover);
 }

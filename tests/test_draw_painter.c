@@ -168,25 +168,33 @@ static void test_an_unknown_backend_is_refused_with_its_cure(void **unused)
     CHECK(strstr(error.text, "osmesa") && strstr(error.text, "egl"));
 }
 
-static void test_two_painters_take_turns(void **unused)
+static void test_painters_take_turns_also_on_different_backends(void **unused)
 {
     (void)unused;
+    static const char *const names[] = {"osmesa", "egl", "osmesa"};
     struct stage stage;
     struct error error = {0};
     struct image alone, turn;
+    struct painter *painters[3];
+    const bool both = backend_there("osmesa") && backend_there("egl");
+    unsetenv("SANDREEL_GL");
     stage_open(&stage, 300);
     stage_fill(&stage, 0.3);
     draw(&stage, PAINTER_GL, &alone);
     CHECK(image_create(&turn, WIDTH, HEIGHT, &error));
-    struct painter *painters[2];
-    for (int k = 0; k < 2; k++) painters[k] = painter_create(&stage.scene.view, &error);
+    for (int k = 0; k < 3; k++) {
+        if (both) setenv("SANDREEL_GL", names[k], 1);
+        painters[k] = painter_create(&stage.scene.view, &error);
+        CHECK(painters[k] != NULL);
+    }
+    unsetenv("SANDREEL_GL");
     stage.picture.path = PAINTER_GL;
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 7; k++) {
         memset(turn.rgba, 0, (size_t)WIDTH * HEIGHT * 4);
-        CHECK(painter_frame(painters[k % 2], &stage.picture, &turn, &error));
+        CHECK(painter_frame(painters[k % 3], &stage.picture, &turn, &error));
         CHECK(same(&alone, &turn, 0));
     }
-    for (int k = 0; k < 2; k++) painter_destroy(painters[k]);
+    for (int k = 0; k < 3; k++) painter_destroy(painters[k]);
     image_free(&alone);
     image_free(&turn);
     stage_close(&stage);
@@ -340,6 +348,97 @@ static void test_a_very_wide_picture_is_drawn_whole(void **unused)
     stage_close(&stage);
 }
 
+static void test_a_zoomed_scene_ends_where_the_legend_begins(void **unused)
+{
+    (void)unused;
+    for (int path = PAINTER_GL; path <= PAINTER_SPLATTER; path++) {
+        struct stage stage;
+        struct image with, without;
+        stage_open(&stage, 400);
+        stage_fill(&stage, 0.5);
+        stage.scene.view.legend = stage.scene.view.scale_bar = true;
+        stage.scene.view.size[0] = 640;
+        stage.scene.view.size[1] = 360;
+        memcpy(stage.scene.view.window, (double[4]){6, 3, 10, 5.25}, 4 * sizeof(double));
+        draw(&stage, (enum painter_path)path, &with);
+        stage.grains.count = 0;
+        draw(&stage, (enum painter_path)path, &without);
+        double part[4];
+        overlay_layout(&stage.picture, part);
+        CHECK(part[2] < 640);
+        uint64_t inside = 0;
+        for (int y = 0; y < 360; y++) {
+            for (int x = 0; x < 640; x++) {
+                const size_t at = ((size_t)y * 640 + (size_t)x) * 4;
+                if (memcmp(with.rgba + at, without.rgba + at, 4) == 0) continue;
+                CHECK(x + 1 > part[0] && x < part[2] && y + 1 > part[1] && y < part[3]);
+                inside++;
+            }
+        }
+        /* Discs of this size and number, thrown at random, cover four fifths of the window. */
+        CHECK((double)inside > 0.5 * (part[2] - part[0]) * (part[3] - part[1]));
+        image_free(&with);
+        image_free(&without);
+        stage_close(&stage);
+    }
+}
+
+static void test_grains_that_are_nowhere_are_left_out(void **unused)
+{
+    (void)unused;
+    for (int path = PAINTER_GL; path <= PAINTER_SPLATTER; path++) {
+        struct stage stage;
+        struct image lost, absent;
+        stage_open(&stage, 12);
+        stage_fill(&stage, 0.4);
+        static const double nowhere[] = {NAN, INFINITY, -INFINITY, 1e300};
+        for (int k = 0; k < 4; k++) stage.grains.x[8 + k] = nowhere[k];
+        draw(&stage, (enum painter_path)path, &lost);
+        stage.grains.count = 8;
+        draw(&stage, (enum painter_path)path, &absent);
+        CHECK(same(&lost, &absent, 0));
+        image_free(&lost);
+        image_free(&absent);
+        stage_close(&stage);
+    }
+}
+
+static void test_the_range_is_the_99th_percentile(void **unused)
+{
+    (void)unused;
+    /* Speeds 0.001 .. 1 in an order that is neither up nor down (7 and 1000 have no divisor in
+     * common), one grain that raced off, and spins of both signs. */
+    struct grains grains;
+    struct error error;
+    enum { COUNT = 1000 };
+    CHECK(grains_create(&grains, COUNT, 0, &error));
+    grains.count = COUNT;
+    for (int i = 0; i < COUNT; i++) {
+        grains.vy[i] = -(i * 7 % COUNT + 1) / 1000.0;
+        grains.spin[i] = 2 * grains.vy[i] * (i % 2 ? 1 : -1);
+        grains.radius[i] = 1 + 0.5 * (i % 3);
+        if (grains.vy[i] == -1) grains.vy[i] = -1e6;
+    }
+    float values[COUNT];
+    double range[2];
+    struct view view = {.color = COLOR_SPEED};
+    painter_value_all(&view, &grains, values);
+    painter_value_range(&view, &grains, values, range);
+    CHECK_NEAR(range[0], 0, 0);
+    CHECK_NEAR(range[1], 0.99, 1e-6);
+    view.color = COLOR_SPIN;
+    painter_value_all(&view, &grains, values);
+    painter_value_range(&view, &grains, values, range);
+    CHECK_NEAR(range[0], -1.98, 1e-6);
+    CHECK_NEAR(range[1], 1.98, 1e-6);
+    view.color = COLOR_RADIUS;
+    painter_value_all(&view, &grains, values);
+    painter_value_range(&view, &grains, values, range);
+    CHECK_NEAR(range[0], 1, 0);
+    CHECK_NEAR(range[1], 2, 0);
+    grains_free(&grains);
+}
+
 static void test_pressure_is_force_over_perimeter(void **unused)
 {
     (void)unused;
@@ -368,12 +467,15 @@ int main(void)
         cmocka_unit_test(test_opengl_and_the_splatter_agree_within_four_levels),
         cmocka_unit_test(test_osmesa_and_egl_give_identical_pixels),
         cmocka_unit_test(test_an_unknown_backend_is_refused_with_its_cure),
-        cmocka_unit_test(test_two_painters_take_turns),
+        cmocka_unit_test(test_painters_take_turns_also_on_different_backends),
         cmocka_unit_test(test_without_grains_there_is_only_ground),
         cmocka_unit_test(test_a_grain_lies_where_the_window_puts_it),
         cmocka_unit_test(test_a_grain_covers_its_area_down_to_below_a_pixel),
         cmocka_unit_test(test_the_same_frame_twice_is_the_same_bytes),
         cmocka_unit_test(test_a_very_wide_picture_is_drawn_whole),
+        cmocka_unit_test(test_a_zoomed_scene_ends_where_the_legend_begins),
+        cmocka_unit_test(test_grains_that_are_nowhere_are_left_out),
+        cmocka_unit_test(test_the_range_is_the_99th_percentile),
         cmocka_unit_test(test_pressure_is_force_over_perimeter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,7 +18,9 @@ static float *sums_new(void)
     return sums;
 }
 
-static double coverage(const struct splat *splat, unsigned style)
+static const struct splat_style plain = {0, 0}, rich = {1, 1};
+
+static double coverage(const struct splat *splat, struct splat_style style)
 {
     float *const sums = sums_new();
     splat_add(sums, SIDE, &whole, splat, &(uint32_t){0}, 1, style);
@@ -43,7 +45,7 @@ static void test_the_coverage_of_a_disc_adds_up_to_its_area(void **unused)
         for (int place = 0; place < 400; place++) {
             const struct splat splat = {.x = 32 + (float)rng_uniform(&rng),
                 .y = 31 + (float)rng_uniform(&rng), .radius = (float)radius};
-            const double covered = coverage(&splat, (unsigned)place & 3);
+            const double covered = coverage(&splat, place % 2 ? rich : plain);
             CHECK_NEAR(covered / area, 1, one);
             mean += covered / area / 400;
         }
@@ -56,7 +58,7 @@ static void test_a_disc_is_covered_inside_and_clear_outside(void **unused)
     (void)unused;
     const struct splat splat = {.x = 30.3f, .y = 33.8f, .radius = 9.4f};
     float *const sums = sums_new();
-    splat_add(sums, SIDE, &whole, &splat, &(uint32_t){0}, 1, 0);
+    splat_add(sums, SIDE, &whole, &splat, &(uint32_t){0}, 1, plain);
     for (int i = 0; i < SIDE * SIDE; i++) {
         const double d = hypot(i % SIDE + 0.5 - 30.3, i / SIDE + 0.5 - 33.8);
         /* The half-way line of the edge lies on the circle: a linear ramp, one pixel wide. */
@@ -82,7 +84,7 @@ static void test_grains_far_below_a_pixel_give_the_mean_colour(void **unused)
         index[i] = i;
     }
     float *const sums = sums_new();
-    splat_add(sums, SIDE, &whole, splats, index, COUNT, SPLAT_RIM | SPLAT_SHADE);
+    splat_add(sums, SIDE, &whole, splats, index, COUNT, rich);
     uint8_t *const rgba = malloc(SIDE * SIDE * 4);
     memset(rgba, 255, SIDE * SIDE * 4);
     splat_resolve(sums, rgba, SIDE * SIDE);
@@ -120,12 +122,11 @@ static void test_a_picture_in_pieces_is_the_whole_picture(void **unused)
     uint32_t index[COUNT];
     for (uint32_t i = 0; i < COUNT; i++) index[i] = i;
     float *const once = sums_new(), *const pieces = sums_new();
-    splat_add(once, SIDE, &whole, splats, index, COUNT, SPLAT_RIM | SPLAT_SHADE);
+    splat_add(once, SIDE, &whole, splats, index, COUNT, rich);
     for (uint32_t y = 0; y < SIDE; y += 16) {
         for (uint32_t x = 0; x < SIDE; x += 32) {
             const struct splat_area area = {x, y, x + 32, y + 16};
-            splat_add(pieces + (size_t)y * SIDE * 4, SIDE, &area, splats, index, COUNT,
-                      SPLAT_RIM | SPLAT_SHADE);
+            splat_add(pieces + (size_t)y * SIDE * 4, SIDE, &area, splats, index, COUNT, rich);
         }
     }
     CHECK(memcmp(once, pieces, SIDE * SIDE * 4 * sizeof *once) == 0);

@@ -72,7 +72,7 @@ static void test_a_torn_or_foreign_frame_is_refused(void **unused)
     CHECK(!dump_load(frame, NULL, &in, &error) && in.x == NULL);
     CHECK(dump_save(frame, &out, &error));
     unsigned char *bytes = file_load(frame, 100000, &size, &error);
-    for (size_t cut = 0; cut < size; cut++) {
+    for (size_t cut = 0; cut < size; cut += 7) {
         CHECK(file_save(frame, bytes, cut, &error) && !dump_load(frame, NULL, &in, &error));
     }
     free(bytes);

@@ -1,4 +1,4 @@
-/* test_map.c - maps lose nothing, and show density, flow and temperature of gases that are known. */
+/* test_map.c - maps lose nothing; density, flow and temperature of known gases come out right. */
 #include "base/rng.h"
 #include "check.h"
 #include "measure/map.h"
@@ -300,7 +300,7 @@ static void test_a_periodic_border_is_no_place_of_its_own(void **unused)
     grains_free(&grains);
 }
 
-static void test_grains_that_swing_together_are_cold_at_an_instant_and_warm_on_average(void **unused)
+static void test_grains_that_swing_together_are_cold_at_once_and_warm_on_average(void **unused)
 {
     (void)unused;
     const struct scene scene = box_scene(4, 4, BORDER_WALL, BORDER_WALL);
@@ -376,6 +376,34 @@ static void test_a_smooth_kernel_has_the_width_it_says(void **unused)
     grains_free(&grains);
 }
 
+static void test_a_box_may_lie_anywhere_and_labels_carry_units(void **unused)
+{
+    (void)unused;
+    struct scene scene = box_scene(10, 10, BORDER_WALL, BORDER_WALL);
+    const double box[4] = {-5.3, 100.1, -1.1, 103.7};   /* 4.2 x 3.6: 5 x 4 cells, the last cut */
+    memcpy(scene.box, box, sizeof box);
+    scene.units = UNITS_CGS;
+    struct grains grains = gas(&scene, 2, 0);
+    grains.x[0] = -5.3, grains.y[0] = 100.1;
+    grains.x[1] = -1.1, grains.y[1] = 103.7;
+    struct map *map = make(&scene, 1, KERNEL_BOX, NAN);
+    grains.time = 0.25;
+    map_add(map, &grains);
+    struct field density = field_of(map, MAP_density), heat = field_of(map, MAP_temperature);
+    struct field turn = field_of(map, MAP_spin_temperature);
+    CHECK(density.nx == 5 && density.ny == 4 && density.x0 == -5.3 && density.y0 == 100.1);
+    CHECK_NEAR(density.values[0], 1, 1e-12);
+    CHECK_NEAR(density.values[19], 1 / (0.2 * 0.6), 1e-9);      /* one grain in what is left */
+    CHECK(strcmp(heat.label, "granular temperature [cm^2/s^2], snapshot at t = 0.25 s") == 0);
+    CHECK(strcmp(heat.unit, "cm^2/s^2") == 0 && strcmp(turn.unit, "1/s^2") == 0);
+    CHECK(strcmp(density.name, "density") == 0 && heat.time == 0.25);
+    field_free(&density);
+    field_free(&heat);
+    field_free(&turn);
+    map_destroy(map);
+    grains_free(&grains);
+}
+
 static void test_threads_and_lost_grains_change_nothing(void **unused)
 {
     (void)unused;
@@ -383,7 +411,8 @@ static void test_threads_and_lost_grains_change_nothing(void **unused)
     struct grains grains = gas(&scene, 60000, 1);
     const int threads = omp_get_max_threads();
     for (size_t k = 0; k < 3; k++) {
-        struct map *one = make(&scene, 0.5, kernels[k], 0.3), *many = make(&scene, 0.5, kernels[k], 0.3);
+        struct map *one = make(&scene, 0.5, kernels[k], 0.3);
+        struct map *many = make(&scene, 0.5, kernels[k], 0.3);
         omp_set_num_threads(1);
         map_add(one, &grains);
         omp_set_num_threads(3);
@@ -445,9 +474,10 @@ int main(void)
         cmocka_unit_test(test_the_corner_of_a_disc_is_that_of_many_strips),
         cmocka_unit_test(test_half_a_disc_lies_on_each_side_of_a_line_between_cells),
         cmocka_unit_test(test_a_periodic_border_is_no_place_of_its_own),
-        cmocka_unit_test(test_grains_that_swing_together_are_cold_at_an_instant_and_warm_on_average),
+        cmocka_unit_test(test_grains_that_swing_together_are_cold_at_once_and_warm_on_average),
         cmocka_unit_test(test_heavy_grains_count_more_in_the_flow),
         cmocka_unit_test(test_a_smooth_kernel_has_the_width_it_says),
+        cmocka_unit_test(test_a_box_may_lie_anywhere_and_labels_carry_units),
         cmocka_unit_test(test_threads_and_lost_grains_change_nothing),
         cmocka_unit_test(test_what_cannot_be_mapped_is_refused_with_the_cure),
     };

@@ -4,6 +4,7 @@
  *
  * Each scene below is run by every model that can do what it calls for, once as it stands and once
  * for every choice among the model's own settings (its methods, force laws, integrators, ...).
+ * Grains are soft where a model has a stiffness, so that its time steps are few.
  * Nothing here names a model: a new one is tested by being in model_list.
  */
 #include "check.h"
@@ -20,38 +21,45 @@ struct example {
     bool   open;                /* may grains be outside of the box? */
 };
 
-#define GRAINS "grains = ({ radius = 0.5; restitution = 0.8; });"
+#define SOFT "stiffness = 40000.0;"
+#define GRAINS "grains = ({ radius = 0.5; restitution = 0.8; " SOFT " });"
 #define GAS "placements = ({ kind = \"square\"; spacing = 1.8; temperature = 1.0; });"
-#define PERIODIC "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";"
+#define PERIODIC "left = \"periodic\"; right = \"periodic\";"                \
+                 "bottom = \"periodic\"; top = \"periodic\";"
 
 static const struct example examples[] = {
     {"an elastic gas in a box", "until = 9.0; box = [0.0, 0.0, 18.0, 18.0];"
-     "grains = ({ radius = 0.5; restitution = 1.0; });" GAS, 9, true, false},
+     "grains = ({ radius = 0.5; restitution = 1.0; " SOFT " });" GAS, 5, true, false},
     {"a cooling gas", "until = 9.0; box = [0.0, 0.0, 18.0, 18.0];" PERIODIC GRAINS GAS,
-     9, true, false},
+     5, true, false},
     {"falling into a box", "until = 12.0; box = [-9.0, 0.0, 9.0, 18.0]; gravity = (0.0, -1.0);"
-     GRAINS GAS, 12, true, false},
+     GRAINS GAS, 8, true, false},
     {"a funnel with a gate", "until = 12.0; box = [-9.0, 0.0, 9.0, 24.0]; gravity = (0.0, -1.0);"
      GRAINS "placements = ({ region = [-8.0, 14.0, 8.0, 22.0]; spacing = 1.2; });"
      "walls = ({ shape = \"polyline\"; points = ((-9.0, 16.0), (-3.5, 8.0)); },"
      "         { shape = \"polyline\"; points = ((3.5, 8.0), (9.0, 16.0)); },"
-     "         { shape = \"segment\"; points = ((-3.5, 8.0), (3.5, 8.0)); opens = 4.0;"
-     "           closes = 8.0; });", 12, true, false},
+     "         { shape = \"segment\"; points = ((-3.5, 8.0), (3.5, 8.0)); opens = 4.0; },"
+     "         { shape = \"segment\"; points = ((-9.0, 23.4), (9.0, 23.4)); opens = 1.0;"
+     "           closes = 6.0; });", 8, true, false},
     {"a source and an open bottom", "until = 16.0; box = [-9.0, 0.0, 9.0, 18.0];"
      "gravity = (0.0, -1.0); bottom = \"open\"; count_max = 300;" GRAINS
      "placements = ({ region = [-9.0, 2.0, 9.0, 8.0]; kind = \"square\"; spacing = 1.8; });"
-     "sources = ({ position = (0.0, 14.0); width = 4.0; rate = 2.0; });", 16, false, true},
+     "sources = ({ position = (0.0, 14.0); width = 4.0; rate = 2.0; });", 10, false, true},
     {"two phases: a gas, then heavy and lossy grains", "until = 12.0;"
-     "box = [0.0, 0.0, 18.0, 18.0]; grains = ({ radius = 0.5; restitution = 1.0; });" GAS
+     "box = [0.0, 0.0, 18.0, 18.0];"
+     "grains = ({ radius = 0.5; restitution = 1.0; " SOFT " });" GAS
      "phases = ({ time = 5.0; set = [\"gravity=(0, -1)\", \"grains.[0].restitution=0.7\"]; });",
-     12, true, false},
+     8, true, false},
     {"mixed sizes", "until = 6.0; box = [0.0, 0.0, 18.0, 18.0];"
-     "grains = ({ radius = [0.3, 0.5]; restitution = 0.9; });" GAS, 6, true, false},
+     "grains = ({ radius = [0.3, 0.5]; restitution = 0.9; " SOFT " });" GAS,
+     6, true, false},
     {"rough grains", "until = 6.0; box = [0.0, 0.0, 18.0, 18.0]; gravity = (0.0, -1.0);"
-     "grains = ({ radius = 0.5; restitution = 0.7; friction = 0.5; });" GAS, 6, true, false},
+     "grains = ({ radius = 0.5; restitution = 0.7; " SOFT " friction = 0.5; });" GAS,
+     6, true, false},
     {"two kinds of grains", "until = 6.0; box = [0.0, 0.0, 18.0, 18.0];"
-     "grains = ({ name = \"a\"; radius = 0.5; restitution = 0.7; },"
-     "          { name = \"b\"; radius = 0.4; restitution = 0.95; density = 2.0; });"
+     "grains = ({ name = \"a\"; radius = 0.5; restitution = 0.7; " SOFT " },"
+     "          { name = \"b\"; radius = 0.4; restitution = 0.95; " SOFT
+     "            density = 2.0; });"
      "placements = ({ grains = \"a\"; region = [0.0, 0.0, 18.0, 9.0]; kind = \"square\";"
      "                spacing = 1.8; temperature = 1.0; },"
      "              { grains = \"b\"; region = [0.0, 9.0, 18.0, 18.0]; kind = \"square\";"
@@ -65,8 +73,8 @@ static const struct example examples[] = {
      "           velocity = (-0.5, 0.0); });"
      "screens = ({ kind = \"circle\"; center = (0.0, 0.0); radius = 14.0; });"
      "measure = { collisions = true; };", 6, true, true},
-    {"many grains for two threads", "until = 2.0; box = [0.0, 0.0, 120.0, 120.0];" PERIODIC GRAINS
-     "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 1.0; });", 2, false, false},
+    {"many grains for two threads", "until = 0.5; box = [0.0, 0.0, 75.0, 75.0];" PERIODIC GRAINS
+     "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 16.0; });", 0.5, false, false},
 };
 
 enum { EXAMPLES = sizeof examples / sizeof *examples };
@@ -79,7 +87,7 @@ struct trial {
     struct scene *scene;
 };
 
-static char where[400];         /* told when a check fails */
+static char where[700];         /* told when a check fails */
 
 #define EXPECT(condition)                                                               \
     do {                                                                                \
@@ -94,7 +102,9 @@ static struct scene *load(const struct model *model, const char *text, const cha
         .overrides = &setting, .override_count = setting != NULL,
         .group_count = model_settings(groups), .place = true};
     struct scene *scene = scene_load(&request, findings);
-    if (scene && model && model->resolve) model->resolve(scene, findings);
+    for (uint32_t p = 0; scene && model && model->resolve && p < scene->phase_count; p++) {
+        model->resolve(scene->phases[p], findings);
+    }
     for (uint32_t k = 0; k < findings->count && k < FINDINGS_MAX; k++) {
         if (findings->list[k].kind == FINDING_ERROR) {
             fail_msg("%s: %s", where, findings->list[k].text);
@@ -180,17 +190,15 @@ static uint64_t digest_after(const struct trial *trial, int pieces, bool look, u
     return digest;
 }
 
-static uint64_t check_same_however_it_is_run(const struct trial *trial)
+static void check_same_however_it_is_run(const struct trial *trial, uint64_t straight)
 {
     omp_set_num_threads(1);
-    const uint64_t straight = digest_after(trial, 1, false, unlimited);
     EXPECT(straight == digest_after(trial, 1, false, unlimited));       /* repeatable */
     EXPECT(straight == digest_after(trial, 17, false, unlimited));      /* in pieces */
     EXPECT(straight == digest_after(trial, 17, true, unlimited));       /* watched */
     EXPECT(straight == digest_after(trial, 3, true, 5));                /* small budgets */
     omp_set_num_threads(2);
     EXPECT(straight == digest_after(trial, 1, false, unlimited));       /* two threads */
-    return straight;
 }
 
 /* Saved at `share` of the run and loaded into a fresh simulation, it goes on to the same end. */
@@ -231,12 +239,18 @@ static void check_digest_sees(const struct trial *trial, uint64_t straight)
     simulation_destroy(&sim);
 }
 
-static void run_trial(const struct trial *trial)
+/* Runs the whole contract and returns the digest of the end; but a setting that ends like `plain`
+ * (0: none yet) makes no difference to this scene and has been tested with it. */
+static uint64_t run_trial(const struct trial *trial, uint64_t plain)
 {
-    const uint64_t straight = check_same_however_it_is_run(trial);
+    if (getenv("SHOW")) fprintf(stderr, "%s\n", where);
+    const uint64_t straight = digest_after(trial, 1, false, unlimited);
+    if (straight == plain) return straight;
+    check_same_however_it_is_run(trial, straight);
     check_digest_sees(trial, straight);
     check_resumed(trial, 0.3, straight);
     check_resumed(trial, 0.8, straight);        /* behind the change of phase where there is one */
+    return straight;
 }
 
 static effects_t effects_needed(const struct scene *scene)
@@ -258,7 +272,7 @@ static int run_variants(const struct model *model, const struct example *example
     if (!able) return 0;
     snprintf(where, sizeof where, "%s, %s", model->name, example->name);
     trial.scene = load(model, example->text, NULL);
-    run_trial(&trial);
+    const uint64_t plain_end = run_trial(&trial, 0);
     scene_free(trial.scene);
     int count = 1;
     for (uint32_t k = 0; model->settings && k < model->settings->count; k++) {
@@ -272,9 +286,8 @@ static int run_variants(const struct model *model, const struct example *example
             snprintf(setting, sizeof setting, "%s.%s=%s", model->name, key->name, word);
             snprintf(where, sizeof where, "%s, %s", setting, example->name);
             trial.scene = load(model, example->text, setting);
-            run_trial(&trial);
+            count += run_trial(&trial, plain_end) != plain_end;
             scene_free(trial.scene);
-            count++;
         }
     }
     return count;
@@ -336,8 +349,8 @@ static void test_an_effect_in_a_later_phase_is_refused_before_the_start(void **u
         EXPECT(scene->phase_count == 2);
         struct scene later = *scene->phases[1];
         later.effects |= EFFECT_SHEAR;
-        const struct scene *phases[2] = {scene, &later};
-        const struct scene **kept = scene->phases;
+        struct scene *phases[2] = {scene, &later};
+        struct scene **kept = scene->phases;
         scene->phases = phases;
         struct simulation sim;
         struct error error = {.text = ""};

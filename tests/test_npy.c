@@ -77,7 +77,8 @@ static void test_hostile_headers_are_refused(void **unused)
     /* First some that are unusual but sound, so that what follows fails for its own reason. */
     CHECK(loads("{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }", 16));
     CHECK(loads("{\"shape\":(2,),\"fortran_order\":False,\"descr\":\"<f8\"}\n", 16));
-    CHECK(loads("{'descr': [('a', '<f4'), ('b', '|u1')], 'fortran_order': False, 'shape': (3)}", 15));
+    CHECK(loads("{'descr': [('a', '<f4'), ('b', '|u1')], 'fortran_order': False, "
+                "'shape': (3)}", 15));
     static const struct { const char *text; size_t values; } bad[] = {
         {"", 16},
         {"{}", 16},

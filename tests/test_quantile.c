@@ -30,7 +30,7 @@ static void test_percentiles_agree_with_sorting(void **unused)
         quantile_add(&quantile, values[k]);
     }
     qsort(values, COUNT, sizeof *values, ascending);
-    for (int percent = 0; percent <= 100; percent++) {
+    for (int percent = 0; percent <= 100; percent += 5) {
         int rank = COUNT * percent / 100 - 1;   /* so many do not exceed it */
         if (rank < 0) rank = 0;
         CHECK_NEAR(quantile_at(&quantile, percent / 100.0), values[rank],
@@ -51,7 +51,7 @@ static void test_order_and_merging_do_not_matter(void **unused)
     for (int k = 999; k >= 0; k--) quantile_add(k % 2 ? &odd : &even, values[k]);
     quantile_merge(&odd, &even);
     CHECK(odd.count == 1000);
-    for (int k = 0; k <= 1000; k++) {
+    for (int k = 0; k <= 1000; k += 50) {
         CHECK(quantile_at(&all, k / 1000.0) == quantile_at(&odd, k / 1000.0));
     }
     quantile_free(&all);
@@ -88,7 +88,7 @@ static void test_a_resumed_run_keeps_its_percentiles(void **unused)
     archive_begin_load(&load, save.bytes, save.size);
     quantile_archive(&b, &load);
     CHECK(!save.failed && !load.failed && b.count == 500);
-    for (int k = 0; k < 1000; k++) {
+    for (int k = 0; k < 1000; k += 50) {
         CHECK(quantile_at(&a, k / 1000.0) == quantile_at(&b, k / 1000.0));
     }
     archive_end(&save);

@@ -48,8 +48,8 @@ static json_t *load_old(const struct options *options, struct error *error)
     json_t *root = json_load_file(path, 0, &cause);
     if (root && json_is_array(json_object_get(root, "cases"))) return root;
     json_decref(root);
-    error_set_code(error, EXIT_USAGE, "--against %s: not a table of `sandreel bench --json`%s%s", path,
-                   root ? "" : ": ", root ? "" : cause.text);
+    error_set_code(error, EXIT_USAGE, "--against %s: not a table of `sandreel bench --json`%s%s",
+                   path, root ? "" : ": ", root ? "" : cause.text);
     return NULL;
 }
 
@@ -87,7 +87,7 @@ static bool measure_all(const struct options *options, const json_t *old, json_t
         struct error why = {0};
         if (!is_chosen(options, c)) continue;
         if (!bench_measure(c, repeats, &result, &why)) {
-            /* One case that cannot run here (no renderer, a model left out) does not stop the rest. */
+            /* A case that cannot run here (no renderer) does not stop the rest. */
             fprintf(stderr, "sandreel: %s: %s\n", c->name, why.text);
             if (options->operand_count > 0) {
                 *error = why;

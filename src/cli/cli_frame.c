@@ -44,7 +44,8 @@ static bool draw(const struct options *options, const struct setup *setup, const
     film_close(&film);
     if (!done) return false;
     if (footage->from_dumps && fabs(footage->grains.time - t) > 1e-9 * fabs(t)) {
-        fprintf(stderr, "the nearest frame that the run kept is at t = %.6g\n", footage->grains.time);
+        fprintf(stderr, "the nearest frame that the run kept is at t = %.6g\n",
+                footage->grains.time);
     }
     printf("%s\n", output);
     return true;
@@ -57,8 +58,7 @@ int cli_frame(const struct options *options)
     struct footage footage = {0};
     struct progress progress;
     const char *path = options->operands[0];
-    char dump[FILE_PATH_MAX];
-    const bool redraws = setup_is_run(path) && file_exists(folder_path(dump, path, "dump/index.csv"));
+    const bool redraws = footage_has_dumps(path);
     bool done = opening_threads(options, &error) > 0
         && progress_begin(&progress, options->values[OPTION_progress], &error)
         && opening_load(&setup, options, path, NULL, !redraws, &error)

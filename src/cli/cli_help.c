@@ -59,7 +59,8 @@ static void help_key(const struct key_group *group, const struct key *key, bool 
     key_limits(key, limits, sizeof limits);
     snprintf(name, sizeof name, "%s%s%s", group->name, *group->name ? "." : "", key->name);
     printf("%s%s%s\n", all ? "  " : "", name, all ? "" : "");
-    printf("      %s\n      %s%s%s", key->doc, key_type_word(key->type), *limits ? ", " : "", limits);
+    printf("      %s\n      %s%s%s", key->doc, key_type_word(key->type), *limits ? ", " : "",
+           limits);
     if (key->unit && *key->unit && strcmp(key->unit, "1") != 0) printf(" [%s]", key->unit);
     if (!key->fallback) printf("; must be given\n");
     else if (strcmp(key->fallback, "nan") == 0) printf("; chosen when absent\n");

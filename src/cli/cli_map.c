@@ -71,9 +71,8 @@ int cli_map(const struct options *options)
     struct progress progress;
     unsigned formats = 0;
     const char *path = options->operands[0], *as = options->values[OPTION_as];
-    char index[FILE_PATH_MAX], directory[FILE_PATH_MAX];
-    const bool redraws = setup_is_run(path)
-                      && file_exists(folder_path(index, path, "dump/index.csv"));
+    char directory[FILE_PATH_MAX];
+    const bool redraws = footage_has_dumps(path);
     bool done = opening_threads(options, &error) > 0
         && mapper_parse(as ? as : "png,npy", &formats, &error)
         && progress_begin(&progress, options->values[OPTION_progress], &error)

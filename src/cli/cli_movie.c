@@ -45,10 +45,8 @@ static bool open_panel(struct cast *cast, uint32_t p, const struct options *opti
 {
     struct panel *panel = &cast->panels[p];
     struct setup *setup = &cast->setups[p];
-    char index[FILE_PATH_MAX];
     const char *path = cast->paths[p];
-    const bool redraws = setup_is_run(path)
-                      && file_exists(folder_path(index, path, "dump/index.csv"));
+    const bool redraws = footage_has_dumps(path);
     const char *model = *cast->models[p] ? cast->models[p] : NULL;
     if (!opening_load(setup, options, path, model, !redraws, error)) return false;
     struct view view = setup->scene->view;

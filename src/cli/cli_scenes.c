@@ -76,8 +76,8 @@ int cli_scenes(const struct options *options)
         json_dumpf(list, stdout, JSON_INDENT(4));
         printf("\n");
     } else {
-        printf("\n* its own model, x can run it too, - lacks an effect (`sandreel check SCENE --model "
-               "NAME` says which)\n`sandreel run SCENE --quick` runs the small form of a scene\n");
+        printf("\n* its own model, x can run it too, - lacks an effect (`sandreel check SCENE "
+               "--model NAME` says which)\n`sandreel run SCENE --quick` runs the small form\n");
     }
     json_decref(list);
     return EXIT_DONE;

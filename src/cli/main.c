@@ -17,8 +17,8 @@
 static const uint8_t run_options[] = {OPTION_output, SIMULATING, OPTION_resume, OPTION_time_limit,
     OPTION_dry_run, OPTION_force, OPTION_every, LOOK, ALWAYS};
 static const uint8_t frame_options[] = {OPTION_output, OPTION_time, LOOK, SIMULATING, ALWAYS};
-static const uint8_t movie_options[] = {OPTION_output, OPTION_side_by_side, OPTION_fps, OPTION_every,
-    LOOK, SIMULATING, ALWAYS};
+static const uint8_t movie_options[] = {OPTION_output, OPTION_side_by_side, OPTION_fps,
+    OPTION_every, LOOK, SIMULATING, ALWAYS};
 static const uint8_t map_options[] = {OPTION_output, OPTION_field, OPTION_time, OPTION_average,
     OPTION_as, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_size, OPTION_zoom, OPTION_theme,
     OPTION_colormap, OPTION_scale, OPTION_range, OPTION_title, SIMULATING, ALWAYS};

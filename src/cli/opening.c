@@ -93,6 +93,9 @@ bool opening_load(struct setup *setup, const struct options *options, const char
                   const char *model, bool place, struct error *error)
 {
     *setup = (struct setup){0};
+    if (place && setup_is_run(path) && strcmp(options->command->name, "run") != 0) {
+        fprintf(stderr, "%s: kept no grain states (output.dump): simulating again\n", path);
+    }
     const char *overrides[OPTIONS_OVERRIDES_MAX + 2];
     uint32_t count = 0;
     char model_text[64], method_text[200];
@@ -105,7 +108,9 @@ bool opening_load(struct setup *setup, const struct options *options, const char
         if (!method_override(options, model, method_text, sizeof method_text, error)) return false;
         overrides[count++] = method_text;
     }
-    for (uint32_t k = 0; k < options->override_count; k++) overrides[count++] = options->overrides[k];
+    for (uint32_t k = 0; k < options->override_count; k++) {
+        overrides[count++] = options->overrides[k];
+    }
     const struct setup_request request = {.path = path, .overrides = overrides,
                                           .override_count = count, .place = place};
     const bool done = setup_load(setup, &request, error);

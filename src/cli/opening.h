@@ -1,5 +1,5 @@
-/* opening.h - what most commands begin with: threads, signals, the scene with its findings told, and
- * what they end with: an error told. */
+/* opening.h - what most commands begin with: threads, signals, the scene with its findings told,
+ * and what they end with: an error told. */
 #ifndef OPENING_H
 #define OPENING_H
 

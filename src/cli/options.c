@@ -38,7 +38,9 @@ const char *options_nearest(const char *word, const char *const *words)
 
 static bool accepts(const struct command *command, int id)
 {
-    for (const uint8_t *at = command->accepts; *at != OPTION_COUNT; at++) if (*at == id) return true;
+    for (const uint8_t *at = command->accepts; *at != OPTION_COUNT; at++) {
+        if (*at == id) return true;
+    }
     return false;
 }
 
@@ -55,8 +57,8 @@ static bool refuse(const struct command *command, const char *word, struct error
         return error_set_code(error, EXIT_USAGE, "%s: unknown option '%s'; did you mean '--%s'?",
                               command->name, word, nearest);
     }
-    return error_set_code(error, EXIT_USAGE, "%s: unknown option '%s'; `sandreel help %s` lists its "
-                          "options", command->name, word, command->name);
+    return error_set_code(error, EXIT_USAGE, "%s: unknown option '%s'; `sandreel help %s` lists "
+                          "its options", command->name, word, command->name);
 }
 
 static int find_long(const struct command *command, const char *name, size_t length)
@@ -171,8 +173,8 @@ static bool parse_option(struct options *options, char **arguments, int *at, int
     }
     if (!value && *at + 1 < count) value = arguments[++*at];
     if (!value) {
-        return error_set_code(error, EXIT_USAGE, "--%s needs a value: --%s %s", row->name, row->name,
-                              row->value);
+        return error_set_code(error, EXIT_USAGE, "--%s needs a value: --%s %s", row->name,
+                              row->name, row->value);
     }
     return take(options, id, value, error);
 }
@@ -198,8 +200,8 @@ bool options_parse(struct options *options, const struct command *command, int c
                               command->name, command->operands, command->name);
     }
     if (options->operand_count > command->operands_max) {
-        return error_set_code(error, EXIT_USAGE, "%s: '%s' is one word too many; `sandreel help %s` "
-            "explains the command", command->name, options->operands[command->operands_max],
+        return error_set_code(error, EXIT_USAGE, "%s: '%s' is one word too many; `sandreel help "
+            "%s` explains the command", command->name, options->operands[command->operands_max],
             command->name);
     }
     return true;

@@ -18,7 +18,8 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
 /* X(id, "long", letter or 0, "VALUE" or NULL, "scene key" or NULL, form, "what it does") */
 #define OPTIONS(X)                                                                              \
     X(output,    "output",    'o', "PATH",  NULL, FORM_PLAIN, "where the result goes")          \
-    X(model,     "model",     0,   "NAME",  "model", FORM_WORD, "the model: see `sandreel scenes`") \
+    X(model,     "model",     0,   "NAME",  "model", FORM_WORD,                                 \
+      "the model: see `sandreel scenes`")                                                       \
     X(method,    "method",    0,   "WORD",  NULL, FORM_PLAIN,                                   \
       "a variant of the model: one of the words of its settings, as hertz or gear")             \
     X(set,       "set",       's', "KEY=VALUE", NULL, FORM_PLAIN,                               \
@@ -37,7 +38,8 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(size,      "size",      0,   "WxH",   "view.size", FORM_SIZE, "of the picture in pixels") \
     X(color,     "color",     0,   "WHAT",  "view.color", FORM_WORD,                            \
       "colour by speed, collisions, spin, species, radius, pressure, none")                     \
-    X(map,       "map",       0,   "FIELD", "view.map", FORM_WORD, "draws a field beneath the grains") \
+    X(map,       "map",       0,   "FIELD", "view.map", FORM_WORD,                              \
+      "draws a field beneath the grains")                                                       \
     X(zoom,      "zoom",      0,   "X0,Y0,X1,Y1", "view.window", FORM_LIST, "the part to show") \
     X(theme,     "theme",     0,   "NAME",  "view.theme", FORM_WORD, "white, dark, transparent") \
     X(colormap,  "colormap",  0,   "NAME",  "view.colormap", FORM_WORD,                         \
@@ -52,23 +54,30 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(title,     "title",     0,   "TEXT",  "view.title", FORM_WORD, "a headline")              \
     X(label,     "label",     0,   "TEXT",  "view.label", FORM_WORD,                            \
       "a line of text with {t} {n} {model} {steps} ...")                                        \
-    X(fps,       "fps",       0,   "N",     "output.frame_rate", FORM_PLAIN, "frames a second of a movie") \
-    X(every,     "every",     0,   "DT",    "output.frames", FORM_PLAIN, "simulated time between frames") \
+    X(fps,       "fps",       0,   "N",     "output.frame_rate", FORM_PLAIN,                    \
+      "frames a second of a movie")                                                             \
+    X(every,     "every",     0,   "DT",    "output.frames", FORM_PLAIN,                        \
+      "simulated time between frames")                                                          \
     X(side_by_side, "side-by-side", 0, NULL, NULL, FORM_PLAIN,                                  \
       "one panel a model (--model md,lga) or a scene, with its wall time under each")           \
     X(field,     "field",     0,   "LIST",  "measure.fields", FORM_WORDS, "which maps")         \
     X(cell,      "cell",      0,   "LENGTH", "measure.cell", FORM_PLAIN, "grid constant of maps") \
     X(kernel,    "kernel",    0,   "NAME",  "measure.kernel", FORM_WORD, "box, gauss, lucy")    \
     X(width,     "width",     0,   "LENGTH", "measure.width", FORM_PLAIN, "of the kernel")      \
-    X(average,   "average",   0,   "T1:T2", NULL, FORM_PLAIN, "mean over this time; default: a snapshot") \
+    X(average,   "average",   0,   "T1:T2", NULL, FORM_PLAIN,                                   \
+      "mean over this time; default: a snapshot")                                               \
     X(as,        "as",        0,   "LIST",  NULL, FORM_PLAIN, "formats: png,npy,vti,csv")       \
     X(to,        "to",        0,   "FORMAT", NULL, FORM_PLAIN, "csv, npy")                      \
-    X(explain,   "explain",   0,   NULL,    NULL, FORM_PLAIN, "which effects are on, and which off") \
-    X(frame,     "frame",     0,   "N",     NULL, FORM_PLAIN, "number of a frame; default: the last") \
+    X(explain,   "explain",   0,   NULL,    NULL, FORM_PLAIN,                                   \
+      "which effects are on, and which off")                                                    \
+    X(frame,     "frame",     0,   "N",     NULL, FORM_PLAIN,                                   \
+      "number of a frame; default: the last")                                                   \
     X(grain,     "grain",     0,   "ID",    NULL, FORM_PLAIN, "tells about one grain")          \
-    X(at,        "at",        0,   "X,Y",   NULL, FORM_PLAIN, "tells about the grain nearest to a point") \
+    X(at,        "at",        0,   "X,Y",   NULL, FORM_PLAIN,                                   \
+      "tells about the grain nearest to a point")                                               \
     X(json,      "json",      0,   NULL,    NULL, FORM_PLAIN, "prints one JSON document")       \
-    X(against,   "against",   0,   "OLD.json", NULL, FORM_PLAIN, "prints ratios to an earlier bench") \
+    X(against,   "against",   0,   "OLD.json", NULL, FORM_PLAIN,                                \
+      "prints ratios to an earlier bench")                                                      \
     X(help,      "help",      'h', NULL,    NULL, FORM_PLAIN, "explains the command")
 
 enum option_id {

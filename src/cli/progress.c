@@ -21,7 +21,8 @@ bool progress_begin(struct progress *progress, const char *word, struct error *e
     int how = word ? -1 : PROGRESS_AUTO;
     for (int k = 0; word && k < 4; k++) if (strcmp(word, words[k]) == 0) how = k;
     if (how < 0) {
-        return error_set_code(error, EXIT_USAGE, "--progress %s: use auto, bar, plain or none", word);
+        return error_set_code(error, EXIT_USAGE, "--progress %s: use auto, bar, plain or none",
+                              word);
     }
     progress->how = (enum progress_how)how;
     if (how == PROGRESS_AUTO) progress->how = is_terminal ? PROGRESS_BAR : PROGRESS_PLAIN;

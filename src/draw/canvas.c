@@ -196,7 +196,7 @@ static void canvas_leave(void)
 }
 
 /* Both backends share Mesa's idea of a current context, so the old one is always let go first:
- * EGL would otherwise believe that its own is still current, and do nothing. */
+ * EGL might otherwise believe that its own is still current, and do nothing. */
 static bool canvas_enter(struct canvas *canvas)
 {
     if (canvas_current == canvas) return true;

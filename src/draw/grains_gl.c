@@ -92,7 +92,7 @@ static void grains_upload(struct grains_gl *grains, const struct splat *splats, 
 }
 
 void grains_gl_add(struct grains_gl *grains, float *sums, const struct splat_area *area,
-                   const struct splat *splats, uint32_t count, unsigned style)
+                   const struct splat *splats, uint32_t count, struct splat_style style)
 {
     const uint32_t rows = area->y1 - area->y0;
     assert(rows <= grains->rows);
@@ -109,8 +109,7 @@ void grains_gl_add(struct grains_gl *grains, float *sums, const struct splat_are
         gl.BlendFunc(GL_ONE, GL_ONE);
         gl.UseProgram(grains->program);
         gl.Uniform4f(grains->area, 0, (float)area->y0, 2 / (float)grains->width, 2 / (float)rows);
-        gl.Uniform2f(grains->style, style & SPLAT_RIM ? 1.0f : 0.0f,
-                     style & SPLAT_SHADE ? 1.0f : 0.0f);
+        gl.Uniform2f(grains->style, style.rim, style.shade);
         gl.BindVertexArray(grains->vertices);
         gl.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)count);
         gl.BindVertexArray(0);

@@ -18,6 +18,6 @@ void grains_gl_destroy(struct grains_gl *grains);
 /* As splat_add(), but sets the sums of all pixels of the rows instead of adding to them.  Leaves
  * another framebuffer bound: canvas_begin() comes next. */
 void grains_gl_add(struct grains_gl *grains, float *sums, const struct splat_area *area,
-                   const struct splat *splats, uint32_t count, unsigned style);
+                   const struct splat *splats, uint32_t count, struct splat_style style);
 
 #endif

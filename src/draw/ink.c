@@ -9,7 +9,7 @@
  *     ARC         along and across its middle  radius, half width, cos and sin of half its angle
  *     ARROW       from its tail, across        length, half width; head: length, half width
  *     TRIANGLE    distances inside each side   -
- *     GLYPH       place in the atlas           exponent of the coverage
+ *     GLYPH       place in the atlas           gain of the edges
  *
  * Lines, discs, rectangles and plates are all rounded boxes.  Colours are blended as they are
  * (not in linear light), so that an edge has the grey that its coverage says; the framebuffer
@@ -77,7 +77,8 @@ static void add(struct ink *ink, enum kind kind, const struct frame *f, struct i
     for (int corner = 0; corner < 4; corner++) {
         const double u = corner & 1 ? f->u1 : f->u0, v = corner & 2 ? f->v1 : f->v0;
         vertex[corner] = (struct vertex){
-            .position = {(float)(f->cx + u * f->ux - v * f->uy), (float)(f->cy + u * f->uy + v * f->ux)},
+            .position = {(float)(f->cx + u * f->ux - v * f->uy),
+                         (float)(f->cy + u * f->uy + v * f->ux)},
             .local = {(float)u, (float)v},
             .shape = {(float)s0, (float)s1, (float)s2, (float)s3},
             .color = {color.r, color.g, color.b, color.a},
@@ -153,7 +154,8 @@ void ink_arc(struct ink *ink, double cx, double cy, double radius, double angle0
     for (int row = 0; row < tiles; row++) {
         for (int column = 0; column < tiles; column++) {
             const double u = -reach + side * column, v = -reach + side * row;
-            if (tiles > 1 && !ring_meets(radius, half, u + 0.5 * side, v + 0.5 * side, side)) continue;
+            const double middle_u = u + 0.5 * side, middle_v = v + 0.5 * side;
+            if (tiles > 1 && !ring_meets(radius, half, middle_u, middle_v, side)) continue;
             /* Angles run counter-clockwise, y downwards. */
             const struct frame f = {cx, cy, cos(middle), -sin(middle), u, u + side, v, v + side};
             add(ink, KIND_ARC, &f, color, radius, half, cos(aperture), sin(aperture));
@@ -203,7 +205,8 @@ static struct ink_color colormap_at(const uint8_t (*colormap)[3], double positio
     const double part = at - low;
     uint8_t rgb[3];
     for (int c = 0; c < 3; c++) {
-        rgb[c] = (uint8_t)(colormap[low][c] + part * (colormap[low + 1][c] - colormap[low][c]) + 0.5);
+        const double from = colormap[low][c], to = colormap[low + 1][c];
+        rgb[c] = (uint8_t)(from + part * (to - from) + 0.5);
     }
     return (struct ink_color){rgb[0], rgb[1], rgb[2], 255};
 }
@@ -217,10 +220,12 @@ void ink_gradient(struct ink *ink, double x0, double y0, double x1, double y1,
     for (int k = 0; k < count; k++) {
         if (vertical) {
             const double y = y0 + k, next = fmin(y + 1, y1);
-            ink_rectangle(ink, x0, y, x1, next, colormap_at(colormap, (y1 - 0.5 * (y + next)) / (y1 - y0)));
+            const double position = (y1 - 0.5 * (y + next)) / (y1 - y0);
+            ink_rectangle(ink, x0, y, x1, next, colormap_at(colormap, position));
         } else {
             const double x = x0 + k, next = fmin(x + 1, x1);
-            ink_rectangle(ink, x, y0, next, y1, colormap_at(colormap, (0.5 * (x + next) - x0) / (x1 - x0)));
+            const double position = (0.5 * (x + next) - x0) / (x1 - x0);
+            ink_rectangle(ink, x, y0, next, y1, colormap_at(colormap, position));
         }
     }
 }
@@ -236,12 +241,11 @@ double ink_text_width(struct ink *ink, double size, const char *text)
     return width;
 }
 
-/* Light letters on a dark ground look thinner than dark ones on a light ground; a coverage raised
- * to a power below one makes up for it. */
-static double coverage_exponent(struct ink_color color)
+/* Light letters on a dark ground look thinner than dark ones on a light ground, so the grey of
+ * their edges is raised by this much of itself times what it lacks of full. */
+static double edge_gain(struct ink_color color)
 {
-    const double lightness = (0.299 * color.r + 0.587 * color.g + 0.114 * color.b) / 255;
-    return 1.0 - 0.25 * lightness;
+    return 0.38 * (0.299 * color.r + 0.587 * color.g + 0.114 * color.b) / 255;
 }
 
 static void add_glyph(struct ink *ink, const struct ink_glyph *glyph, double x, double y,
@@ -250,11 +254,12 @@ static void add_glyph(struct ink *ink, const struct ink_glyph *glyph, double x, 
     struct vertex *vertex = new_shape(ink);
     if (!vertex) return;
     for (int corner = 0; corner < 4; corner++) {
-        const float u = (float)(corner & 1 ? glyph->width : 0), v = (float)(corner & 2 ? glyph->height : 0);
+        const float u = (float)(corner & 1 ? glyph->width : 0);
+        const float v = (float)(corner & 2 ? glyph->height : 0);
         vertex[corner] = (struct vertex){
             .position = {(float)x + u, (float)y + v},
             .local = {(float)glyph->x + u, (float)glyph->y + v},
-            .shape = {(float)coverage_exponent(color)},
+            .shape = {(float)edge_gain(color)},
             .color = {color.r, color.g, color.b, color.a},
             .kind = KIND_GLYPH,
         };
@@ -349,8 +354,8 @@ static bool upload_indices(struct ink *ink)
         const uint32_t corners[6] = {0, 1, 2, 2, 1, 3};
         for (uint32_t c = 0; c < 6; c++) indices[6 * k + c] = 4 * k + corners[c];
     }
-    gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(ink->capacity * 6 * sizeof *indices), indices,
-                 GL_STATIC_DRAW);
+    const size_t size = ink->capacity * 6 * sizeof *indices;
+    gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)size, indices, GL_STATIC_DRAW);
     ink->index_capacity = ink->capacity;
     free(indices);
     return true;

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include <ft2build.h>
+#include FT_ADVANCES_H
 #include FT_FREETYPE_H
 #include FT_OUTLINE_H
 
@@ -79,8 +80,10 @@ struct ink_font *ink_font_create(struct error *error)
         error_set(error, "not enough memory for the glyphs of a font");
         return NULL;
     }
-    if (FT_Init_FreeType(&font->library) != 0 || FT_New_Face(font->library, path, 0, &font->face) != 0) {
-        error_set(error, "%s: FreeType cannot read this font; let SANDREEL_FONT name another", path);
+    if (FT_Init_FreeType(&font->library) != 0
+        || FT_New_Face(font->library, path, 0, &font->face) != 0) {
+        error_set(error, "%s: FreeType cannot read this font; let SANDREEL_FONT name another",
+                  path);
         ink_font_destroy(font);
         return NULL;
     }
@@ -113,7 +116,10 @@ static bool load(struct ink_font *font, uint32_t code, double size)
 
 double ink_font_advance(struct ink_font *font, uint32_t code, double size)
 {
-    return load(font, code, size) ? (double)font->face->glyph->linearHoriAdvance / 65536 : 0;
+    FT_Fixed advance;
+    const FT_UInt index = FT_Get_Char_Index(font->face, code);
+    if (FT_Get_Advance(font->face, index, FT_LOAD_NO_SCALE, &advance) != 0) return 0;
+    return size * (double)advance / font->face->units_per_EM;
 }
 
 /* Room for width x height pixels with an empty border; false if the atlas is full. */
@@ -174,7 +180,9 @@ bool ink_font_glyph(struct ink_font *font, uint32_t code, double size, double fr
     }
     const uint64_t key = (uint64_t)code << 32 | (uint64_t)lround(size * 64) << 2 | phase;
     uint32_t slot = (uint32_t)(key * 0x9e3779b97f4a7c15u >> 40) & (GLYPHS_MAX - 1);
-    while (font->table[slot].key && font->table[slot].key != key) slot = (slot + 1) & (GLYPHS_MAX - 1);
+    while (font->table[slot].key && font->table[slot].key != key) {
+        slot = (slot + 1) & (GLYPHS_MAX - 1);
+    }
     struct entry *entry = &font->table[slot];
     if (!entry->key) {
         if (font->count >= GLYPHS_MAX / 2) return false;

@@ -7,9 +7,12 @@
 
 /* The transparent theme's walls are grey, to be seen on a white page and on a dark slide. */
 static const struct { struct ink_color ground, text, wall, body; } themes[] = {
-    [THEME_WHITE] = {{255, 255, 255, 255}, {27, 28, 38, 255}, {27, 28, 38, 255}, {203, 205, 213, 255}},
-    [THEME_DARK] = {{22, 24, 31, 255}, {232, 233, 239, 255}, {206, 209, 219, 255}, {74, 78, 92, 255}},
-    [THEME_TRANSPARENT] = {{255, 255, 255, 0}, {27, 28, 38, 255}, {92, 95, 110, 255}, {160, 163, 175, 255}},
+    [THEME_WHITE] = {{255, 255, 255, 255}, {27, 28, 38, 255},
+                     {27, 28, 38, 255}, {203, 205, 213, 255}},
+    [THEME_DARK] = {{22, 24, 31, 255}, {232, 233, 239, 255},
+                    {206, 209, 219, 255}, {74, 78, 92, 255}},
+    [THEME_TRANSPARENT] = {{255, 255, 255, 0}, {27, 28, 38, 255},
+                           {116, 119, 134, 255}, {172, 175, 187, 255}},
 };
 
 struct ink_color overlay_ground(enum theme theme) { return themes[theme].ground; }

@@ -19,6 +19,8 @@ static const uint32_t single_max = 2500;        /* visible grains that get an ar
 static const double single_diameter = 7;        /* units; smaller grains are averaged too */
 static const double cell_size = 24;             /* units */
 static const double length_min = 1.5;           /* pixels */
+static const double length_max = 4;             /* times the arrow in the legend: a few outliers
+                                                 * must not cross the picture */
 
 struct arrow { float x, y, vx, vy; };           /* pixels; velocity y upwards */
 
@@ -37,7 +39,8 @@ static uint32_t gather_visible(const struct picture *picture, const struct trans
     for (uint32_t i = 0; i < grains->count; i++) {
         const double x = transform_x(t, grains->x[i]), y = transform_y(t, grains->y[i]);
         if (!(x >= 0 && y >= 0 && x < width && y < height)) continue;
-        list[count++] = (struct arrow){(float)x, (float)y, (float)grains->vx[i], (float)grains->vy[i]};
+        list[count++] = (struct arrow){(float)x, (float)y, (float)grains->vx[i],
+                                       (float)grains->vy[i]};
     }
     return count;
 }
@@ -51,7 +54,8 @@ static bool average_cells(struct arrows *arrows, const struct picture *picture,
     const double shift_y = fmod(t->y1 * t->scale, size) + size;
     const uint32_t nx = (uint32_t)(picture->view->size[0] / size) + 4;
     const uint32_t ny = (uint32_t)(picture->view->size[1] / size) + 4;
-    struct sum { double x, y, vx, vy; uint32_t count; } *sums = calloc((size_t)nx * ny, sizeof *sums);
+    struct sum { double x, y, vx, vy; uint32_t count; } *sums;
+    sums = calloc((size_t)nx * ny, sizeof *sums);
     if (!sums) return false;
     for (uint32_t k = 0; k < arrows->count; k++) {
         const struct arrow *a = &arrows->list[k];
@@ -135,20 +139,38 @@ bool overlay_arrows_key(const struct picture *picture, const struct transform *t
     return found;
 }
 
+struct sample { double speed, pixels, width; };    /* the arrow in the legend; width of all arrows */
+
+/* All arrows in one colour, or the lines beneath them; those too short to point anywhere are left
+ * out, and those that are mostly head need no line. */
+static void draw_all(struct ink *ink, const struct arrows *arrows, const struct sample *key,
+                     bool halo, struct ink_color color)
+{
+    const double width = key->width;
+    for (uint32_t k = 0; k < arrows->count; k++) {
+        const struct arrow *a = &arrows->list[k];
+        const double vx = (double)a->vx, vy = (double)a->vy;
+        const double scale = key->pixels * fmin(1 / key->speed, length_max / hypot(vx, vy));
+        const double x = (double)a->x, dx = vx * scale, y = (double)a->y, dy = -vy * scale;
+        if (!(hypot(dx, dy) > (halo ? 6 * width : length_min))) continue;
+        if (halo) ink_line(ink, x, y, x + dx, y + dy, 2.2 * width, color);
+        else ink_arrow(ink, x, y, x + dx, y + dy, width, color);
+    }
+}
+
+/* Under every arrow lies a paler line, so that a dark one shows on dark grains too. */
 void overlay_arrows(struct ink *ink, const struct picture *picture, const struct transform *t)
 {
+    const bool dark = picture->view->theme == THEME_DARK;
+    const uint8_t arrow_grey = dark ? 250 : 12, halo_grey = dark ? 0 : 255;
     struct arrows arrows;
-    double speed, length, width;
-    const struct ink_color color = picture->view->theme == THEME_DARK
-        ? (struct ink_color){250, 250, 252, 255} : (struct ink_color){12, 12, 18, 255};
-    if (gather(picture, t, &arrows) && measure(picture, t, &arrows, &speed, &length, &width)) {
-        for (uint32_t k = 0; k < arrows.count; k++) {
-            const struct arrow *a = &arrows.list[k];
-            const double dx = (double)a->vx * length / speed, dy = -(double)a->vy * length / speed;
-            if (!(hypot(dx, dy) > length_min)) continue;
-            const double x = (double)a->x, y = (double)a->y;
-            ink_arrow(ink, x, y, x + dx, y + dy, width, color);
-        }
+    struct sample key;
+    if (gather(picture, t, &arrows)
+        && measure(picture, t, &arrows, &key.speed, &key.pixels, &key.width)) {
+        draw_all(ink, &arrows, &key, true,
+                 (struct ink_color){halo_grey, halo_grey, halo_grey, 110});
+        draw_all(ink, &arrows, &key, false,
+                 (struct ink_color){arrow_grey, arrow_grey, arrow_grey, 255});
     }
     free(arrows.list);
 }

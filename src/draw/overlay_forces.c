@@ -65,7 +65,8 @@ struct ink_color overlay_forces_color(enum theme theme, double share)
     return (struct ink_color){rgb[0], rgb[1], rgb[2], 255};
 }
 
-/* From grain i through the contact to the other centre.  Across a periodic border the other
+/* From grain i through the contact to the other centre; at a wall the round end stops short of
+ * the contact, so that it does not look through.  Across a periodic border the other
  * centre is elsewhere: then each grain gets its own half of the line. */
 static uint32_t contact_lines(const struct grains *grains, const struct contact *c, double width,
                               const struct transform *t, struct line lines[2])
@@ -74,6 +75,11 @@ static uint32_t contact_lines(const struct grains *grains, const struct contact 
     const double dx = (double)c->x - x, dy = (double)c->y - y, reach = hypot(dx, dy);
     double x1 = (double)c->x, y1 = (double)c->y;
     uint32_t count = 1;
+    if (c->j >= grains->count && reach > 0) {
+        const double share = fmax(0.3, 1 - 0.5 * width / (t->scale * reach));
+        x1 = x + share * dx;
+        y1 = y + share * dy;
+    }
     if (c->j < grains->count && reach > 0) {
         const double rj = grains->radius[c->j], xj = grains->x[c->j], yj = grains->y[c->j];
         x1 = x + dx * (reach + rj) / reach;

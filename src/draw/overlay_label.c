@@ -51,8 +51,9 @@ static bool find_value(const struct picture *picture, const char *name, char val
     } else if (strcmp(name, "title") == 0) snprintf(value, VALUE_MAX, "%s", scene->title);
     else if (strcmp(name, "model") == 0) snprintf(value, VALUE_MAX, "%s", scene->model);
     else if (strcmp(name, "units") == 0) snprintf(value, VALUE_MAX, "%s", units[scene->units]);
-    else if (strcmp(name, "time_unit") == 0) snprintf(value, VALUE_MAX, "%s", scene_unit(scene, "time"));
-    else return false;
+    else if (strcmp(name, "time_unit") == 0) {
+        snprintf(value, VALUE_MAX, "%s", scene_unit(scene, "time"));
+    } else return false;
     return true;
 }
 
@@ -118,15 +119,26 @@ void overlay_label(const struct picture *picture, const char *text, char *out, s
     trim(out);
 }
 
-void overlay_label_unit(const char *unit, char *out, size_t size)
+/* Raises the digit behind every ^, and replaces blanks unless `blank` is one itself. */
+static void raise_digits(const char *text, const char *blank, char *out, size_t size)
 {
     static const char *const raised[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074"};
     out[0] = 0;
-    for (; *unit; unit++) {
-        if (*unit == '^' && unit[1] >= '0' && unit[1] <= '4') {
-            unit++;
-            append(out, size, raised[*unit - '0'], strlen(raised[*unit - '0']));
-        } else if (*unit == ' ') append(out, size, "\u00b7", strlen("\u00b7"));
-        else append(out, size, unit, 1);
+    for (; *text; text++) {
+        if (*text == '^' && text[1] >= '0' && text[1] <= '4') {
+            text++;
+            append(out, size, raised[*text - '0'], strlen(raised[*text - '0']));
+        } else if (*text == ' ') append(out, size, blank, strlen(blank));
+        else append(out, size, text, 1);
     }
+}
+
+void overlay_label_unit(const char *unit, char *out, size_t size)
+{
+    raise_digits(unit, "\u00b7", out, size);
+}
+
+void overlay_label_raise(const char *text, char *out, size_t size)
+{
+    raise_digits(text, " ", out, size);
 }

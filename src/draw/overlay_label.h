@@ -11,7 +11,10 @@
  * (any number with a printf format of its own); {{ is a brace; what is unknown stays. */
 void overlay_label(const struct picture *picture, const char *text, char *out, size_t size);
 
-/* "m/s^2" as "m/s" with a raised 2. */
+/* "kg m/s^2" as "kg" with a dot, "m/s" with a raised 2. */
 void overlay_label_unit(const char *unit, char *out, size_t size);
+
+/* The same for a sentence, whose blanks stay. */
+void overlay_label_raise(const char *text, char *out, size_t size);
 
 #endif

@@ -10,7 +10,7 @@
 static const double text_share = 1.0 / 40;      /* of the picture's height */
 static const double text_min = 9;               /* below, letters cannot be read */
 static const double width_min = 18, height_min = 13;    /* of a picture with a legend, in letters */
-static const double column_width = 6.6, item_width = 12, row_height = 1.9;
+static const double column_width = 7, item_width = 13.5, row_height = 1.9;
 static const double margin = 0.6;
 
 static void choose_text(const struct picture *picture, struct layout *layout)
@@ -41,7 +41,8 @@ static double letters(const char *text)
 static void choose_parts(const struct picture *picture, struct layout *layout)
 {
     const struct view *view = picture->view;
-    layout->grains_bar = view->legend && view->grains && picture->grains && view->color != COLOR_NONE;
+    layout->grains_bar = view->legend && view->grains && picture->grains
+        && view->color != COLOR_NONE;
     layout->field_bar = view->legend && picture->field;
     layout->title = view->title[0] != 0;
     layout->label = view->label[0] != 0;

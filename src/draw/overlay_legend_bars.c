@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* Sizes in letters of the layout's size. */
-static const double tick_size = 0.88, heading_size = 0.92, line_spacing = 1.25;
+static const double tick_size = 0.88, heading_size = 0.88, line_spacing = 1.25;
 static const double bar_length_max = 26;
 
 enum { HEADING_LINES = 4, LINE_MAX = 120, HEADING_MAX = 200, UNIT_MAX = 40 };
@@ -73,8 +73,9 @@ static void draw_ticks(const struct legend *legend, const struct ticks *ticks, d
         const double y = y1 + ticks->list[k].position * (y0 - y1);
         const double edge = fmin(fmax(round(y - 0.5 * rule), y0), y1 - rule);
         ink_rectangle(legend->ink, x, edge, x + round(0.3 * s), edge + rule, legend->text);
-        ink_text(legend->ink, x + 0.55 * s, edge + 0.5 * (rule + OVERLAY_LEGEND_CAPITAL * size), size,
-                 INK_LEFT, legend->text, ticks->list[k].text);
+        const double base = edge + 0.5 * (rule + OVERLAY_LEGEND_CAPITAL * size);
+        ink_text(legend->ink, x + 0.55 * s, base, size, INK_LEFT, legend->text,
+                 ticks->list[k].text);
     }
 }
 
@@ -86,8 +87,8 @@ static double draw_heading(const struct legend *legend, const char *heading, dou
     const uint32_t count = wrap(legend, heading, size, room, lines);
     for (uint32_t k = 0; k < count; k++) {
         y += line_spacing * size;
-        ink_text(legend->ink, x, y, overlay_legend_fit(legend, size, room, lines[k]), INK_LEFT, legend->text,
-                 lines[k]);
+        const double fitted = overlay_legend_fit(legend, size, room, lines[k]);
+        ink_text(legend->ink, x, y, fitted, INK_LEFT, legend->text, lines[k]);
     }
     return y;
 }
@@ -121,7 +122,7 @@ static void make_heading(char *out, size_t size, const char *name, const char *u
     ticks_make(&ticks, bar->scale, bar->range, TICKS_MAX);
     if (ticks.exponent != 0) ticks_power(factor, ticks.exponent);
     overlay_label_unit(unit, pretty, sizeof pretty);
-    const char *blank = factor[0] && pretty[0] ? " " : "";
+    const char *blank = factor[0] && pretty[0] ? "\u00a0" : "";  /* no line ends here */
     if (factor[0] || pretty[0]) snprintf(out, size, "%s (%s%s%s)", name, factor, blank, pretty);
     else snprintf(out, size, "%s", name);
 }
@@ -183,13 +184,13 @@ static void field_bar(const struct legend *legend, struct bar *bar)
     bar->scale = SCALE_LINEAR;
     bar->range[0] = legend->field_range[0];
     bar->range[1] = legend->field_range[1];
-    make_heading(bar->heading, sizeof bar->heading, field->label[0] ? field->label : field->name,
-                 field->label[0] ? "" : field->unit, bar);
+    char label[HEADING_MAX];
+    overlay_label_raise(field->label[0] ? field->label : field->name, label, sizeof label);
+    make_heading(bar->heading, sizeof bar->heading, label, field->label[0] ? "" : field->unit, bar);
     const size_t count = (size_t)field->nx * field->ny;
     for (size_t k = 0; k < count; k++) {
-        double square = field->values[k] * field->values[k];
-        if (field->components == 1) mark_ends(bar, field->values[k]);
-        else mark_ends(bar, sqrt(square += field->values[count + k] * field->values[count + k]));
+        const double x = field->values[k];
+        mark_ends(bar, field->components == 1 ? x : hypot(x, field->values[count + k]));
     }
 }
 

@@ -68,7 +68,7 @@ static void draw_scale(const struct legend *legend, const struct place *place)
     char text[ITEM_TEXT_MAX];
     length_text(scene, length, text);
     draw_plate(legend, place, width, text);
-    const double thick = fmax(1, round(2.2 * legend->layout.unit)), half = round(0.3 * s);
+    const double thick = fmax(1, round(3 * legend->layout.unit)), half = round(0.3 * s);
     const double y = round(place->y - 0.5 * thick), rule = legend->rule;
     const double x0 = place->x, x1 = place->x + width;
     ink_rectangle(legend->ink, x0, y, x1, y + thick, legend->text);

@@ -20,9 +20,11 @@
 
 typedef float pixel __attribute__((vector_size(16)));
 typedef int32_t words __attribute__((vector_size(16)));
+typedef uint8_t lanes __attribute__((vector_size(16)));
 typedef uint8_t bytes __attribute__((vector_size(4)));
 
 enum { PIECE = 64 };            /* pixels of a row handled at a time */
+enum { RIM = 1, SHADE = 2 };    /* what a loop is compiled for */
 
 /* Below this radius a disc cannot be told from a square of its area, and sampling the analytic
  * edge at pixel centres would miss the area by up to 12 % (by 4 % at most above). */
@@ -101,21 +103,21 @@ struct disc {
     float shade, rim, rim_from; /* strengths, and where the rim begins */
 };
 
-static struct disc disc_prepare(const struct splat *splat)
+static struct disc disc_prepare(const struct splat *splat, struct splat_style style)
 {
     const float r = splat->radius, edge = sqrtf(r * r - EDGE_AREA);
     return (struct disc){
         .x = splat->x, .y = splat->y, .reach = edge + 0.5f, .per_radius = 1 / r,
-        /* Both fade in as the grain grows, since they need some pixels to be seen. */
-        .shade = bounded((r - RADIUS_SQUARE) * 0.5f, 0, 1),
-        .rim = RIM_DARK * bounded((r - 2.5f) * 0.4f, 0, 1),
+        /* On a tiny grain among larger ones both would leave nothing of its colour. */
+        .shade = style.shade * bounded(r - RADIUS_SQUARE, 0, 1),
+        .rim = style.rim * RIM_DARK * bounded(r - RADIUS_SQUARE, 0, 1),
         .rim_from = edge - 0.5f - bounded(RIM_SHARE * r, RIM_MIN, RIM_MAX),
     };
 }
 
 /* Coverage, and the factors of the grain's colour and of white, for `count` pixels of a row. */
 FORCE_INLINE void disc_row(const struct disc *disc, float x0, float dy, int32_t count,
-                           float *cover, float *color, float *white, unsigned style)
+                           float *cover, float *color, float *white, unsigned effects)
 {
     for (int32_t i = 0; i < count; i++) {
         const float dx = x0 + (float)i - disc->x;
@@ -124,7 +126,7 @@ FORCE_INLINE void disc_row(const struct disc *disc, float x0, float dy, int32_t 
         a = a < 0 ? 0 : a;
         a = a > 1 ? 1 : a;
         float light = 1, spot = 0;
-        if (style & SPLAT_SHADE) {
+        if (effects & SHADE) {
             const float ux = dx * disc->per_radius - LIGHT_X;
             const float uy = dy * disc->per_radius - LIGHT_Y;
             const float q = ux * ux + uy * uy;
@@ -133,7 +135,7 @@ FORCE_INLINE void disc_row(const struct disc *disc, float x0, float dy, int32_t 
             spot = LIGHT_SPOT * s * s * disc->shade;
             light = (1 + (LIGHT_TOP - LIGHT_DARK * q - 1) * disc->shade) * (1 - spot);
         }
-        if (style & SPLAT_RIM) {
+        if (effects & RIM) {
             float rim = d - disc->rim_from;
             rim = rim < 0 ? 0 : rim;
             rim = disc->rim * (rim > 1 ? 1 : rim);
@@ -141,15 +143,16 @@ FORCE_INLINE void disc_row(const struct disc *disc, float x0, float dy, int32_t 
             spot *= 1 - rim;
         }
         cover[i] = a;
-        if (style) color[i] = a * light;
-        if (style & SPLAT_SHADE) white[i] = a * spot;
+        if (effects) color[i] = a * light;
+        if (effects & SHADE) white[i] = a * spot;
     }
 }
 
 FORCE_INLINE void disc_add(float *sums, uint32_t width, const struct splat_area *area,
-                           const struct splat *splat, pixel color, unsigned style)
+                           const struct splat *splat, pixel color, struct splat_style style,
+                           unsigned effects)
 {
-    const struct disc disc = disc_prepare(splat);
+    const struct disc disc = disc_prepare(splat, style);
     const pixel opaque = {0, 0, 0, 1}, white = {1, 1, 1, 0};
     int32_t x0, x1, y0, y1;
     extent_pixels(disc.y, disc.reach, area->y0, area->y1, &y0, &y1);
@@ -161,11 +164,11 @@ FORCE_INLINE void disc_add(float *sums, uint32_t width, const struct splat_area 
         for (int32_t x = x0; x < x1; x += PIECE) {
             float a[PIECE], c[PIECE], w[PIECE];
             const int32_t count = x1 - x < PIECE ? x1 - x : PIECE;
-            disc_row(&disc, (float)x + 0.5f, dy, count, a, c, w, style);
+            disc_row(&disc, (float)x + 0.5f, dy, count, a, c, w, effects);
             for (int32_t i = 0; i < count; i++) {
-                if (style & SPLAT_SHADE) {
+                if (effects & SHADE) {
                     row[x + i] += color * c[i] + white * w[i] + opaque * a[i];
-                } else if (style) {
+                } else if (effects) {
                     row[x + i] += color * c[i] + opaque * a[i];
                 } else {
                     row[x + i] += (color + opaque) * a[i];
@@ -177,7 +180,7 @@ FORCE_INLINE void disc_add(float *sums, uint32_t width, const struct splat_area 
 
 FORCE_INLINE void grains_add(float *sums, uint32_t width, const struct splat_area *area,
                              const struct splat *splats, const uint32_t *index, uint32_t count,
-                             unsigned style)
+                             struct splat_style style, unsigned effects)
 {
     for (uint32_t k = 0; k < count; k++) {
         const struct splat *const splat = &splats[index[k]];
@@ -187,31 +190,31 @@ FORCE_INLINE void grains_add(float *sums, uint32_t width, const struct splat_are
             color[3] = 1;
             square_add(sums, width, area, splat, color);
         } else {
-            disc_add(sums, width, area, splat, color, style);
+            disc_add(sums, width, area, splat, color, style, effects);
         }
     }
 }
 
-#define SPLAT_STYLES(X) X(plain, 0) X(rimmed, SPLAT_RIM) X(shaded, SPLAT_SHADE) \
-    X(rimmed_and_shaded, SPLAT_RIM | SPLAT_SHADE)
+#define LOOPS(X) X(plain, 0) X(rimmed, RIM) X(shaded, SHADE) X(rimmed_and_shaded, RIM | SHADE)
 
-#define X(name, style)                                                                        \
+#define X(name, effects)                                                                      \
     DISPATCH static void add_##name(float *sums, uint32_t width, const struct splat_area *area, \
                                     const struct splat *splats, const uint32_t *index,        \
-                                    uint32_t count)                                           \
+                                    uint32_t count, struct splat_style style)                 \
     {                                                                                         \
-        grains_add(sums, width, area, splats, index, count, style);                           \
+        grains_add(sums, width, area, splats, index, count, style, effects);                  \
     }
-SPLAT_STYLES(X)
+LOOPS(X)
 #undef X
 
 void splat_add(float *sums, uint32_t width, const struct splat_area *area,
-               const struct splat *splats, const uint32_t *index, uint32_t count, unsigned style)
+               const struct splat *splats, const uint32_t *index, uint32_t count,
+               struct splat_style style)
 {
-    switch (style) {
-#define X(name, style_name) \
-    case style_name: add_##name(sums, width, area, splats, index, count); break;
-    SPLAT_STYLES(X)
+    switch ((style.rim > 0 ? RIM : 0) | (style.shade > 0 ? SHADE : 0)) {
+#define X(name, effects) \
+    case effects: add_##name(sums, width, area, splats, index, count, style); break;
+    LOOPS(X)
 #undef X
     }
 }
@@ -221,18 +224,23 @@ DISPATCH void splat_resolve(const float *sums, uint8_t *rgba, size_t count)
     for (size_t i = 0; i < count; i++, sums += 4, rgba += 4) {
         const float coverage = sums[3];
         if (coverage <= 0) continue;
-        const float share = coverage > 1 ? 255 / coverage : 255;
-        const float rest = coverage > 1 ? 0 : 1 - coverage;
-        bytes below;
-        memcpy(&below, rgba, 4);
-        pixel value = *(const pixel *)sums * share
-            + __builtin_convertvector(below, pixel) * rest + 0.5f;
+        pixel value = *(const pixel *)sums * 255;
+        if (coverage < 1) {
+            bytes below;
+            memcpy(&below, rgba, 4);
+            value += __builtin_convertvector(below, pixel) * (1 - coverage);
+        } else if (coverage > 1) {
+            value *= 1 / coverage;
+        }
+        value += 0.5f;
         /* Lights may shine beyond white; premultiplied colours end at their alpha. */
         const pixel most = {value[3], value[3], value[3], value[3]};
         const words over = value > most;
         value = (pixel)(((words)value & ~over) | ((words)most & over));
-        const words whole = __builtin_convertvector(value, words);
-        const bytes color = __builtin_convertvector(whole, bytes);
+        /* The lowest byte of each word; a conversion of vectors would go through four registers. */
+        const lanes whole = (lanes)__builtin_convertvector(value, words);
+        const lanes color = __builtin_shufflevector(whole, whole, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4,
+                                                    8, 12, 0, 4, 8, 12);
         memcpy(rgba, &color, 4);
     }
 }

@@ -23,7 +23,8 @@ struct splat {
     uint8_t rgb[3], unused;
 };
 
-enum splat_style { SPLAT_RIM = 1, SPLAT_SHADE = 2 };
+/* How strongly grains are rimmed and lit, 0 .. 1. */
+struct splat_style { float rim, shade; };
 
 /* A rectangle of pixels: x0 <= x < x1, y0 <= y < y1. */
 struct splat_area { uint32_t x0, y0, x1, y1; };
@@ -38,7 +39,8 @@ bool splat_touches(const struct splat *splat, const struct splat_area *area);
  * each pixel, rows of `width` pixels from area->y0 on; `index` picks the grains.  Pixels outside
  * the area are left alone. */
 void splat_add(float *sums, uint32_t width, const struct splat_area *area,
-               const struct splat *splats, const uint32_t *index, uint32_t count, unsigned style);
+               const struct splat *splats, const uint32_t *index, uint32_t count,
+               struct splat_style style);
 
 /* Puts the colours that `count` pixels have by their sums over what `rgba` holds (premultiplied
  * before and after). */

@@ -176,7 +176,8 @@ static void linear_ticks(struct ticks *ticks, const struct request *request, uin
 static void sqrt_ticks(struct ticks *ticks, const struct request *request, uint32_t wanted)
 {
     const double gap = 0.8 / wanted, low = request->range[0];
-    struct step s = step_choose(low, request->range[1], wanted > 4 ? (wanted + 2) / 2 : 3);
+    const uint32_t even = wanted > 4 ? (wanted + 2) / 2 : wanted < 3 ? wanted : 3;
+    struct step s = step_choose(low, request->range[1], even);
     int64_t first, last;
     multiples(s, low, request->range[1], &first, &last);
     for (int64_t k = last; k >= first; k--) insert(ticks, request, k * s.mantissa, s.exponent, gap);
@@ -191,16 +192,18 @@ static void sqrt_ticks(struct ticks *ticks, const struct request *request, uint3
     }
 }
 
+/* Tries 1, 2, 5 in each decade, then 1, 3, then the decades alone, then every second one. */
 static void log_ticks(struct ticks *ticks, const struct request *request, uint32_t wanted)
 {
-    static const int sets[3][4] = {{1, 2, 5, 0}, {1, 3, 0, 0}, {1, 0, 0, 0}};
+    static const struct { int mantissas[4], decades; } sets[] = {
+        {{1, 2, 5, 0}, 1}, {{1, 3, 0, 0}, 1}, {{1, 0, 0, 0}, 1}, {{1, 0, 0, 0}, 2}};
     const double high = request->range[1], low = fmax(request->range[0], high / 1000);
     const int first = (int)floor(log10(low)), last = (int)ceil(log10(high));
-    for (int set = 0; set < 3; set++) {
+    for (size_t set = 0; set < sizeof sets / sizeof *sets; set++) {
         ticks->count = 0;
         uint32_t found = 0;
-        for (int exponent = first; exponent <= last; exponent++) {
-            for (const int *m = sets[set]; *m; m++) {
+        for (int exponent = first; exponent <= last; exponent += sets[set].decades) {
+            for (const int *m = sets[set].mantissas; *m; m++) {
                 const double value = decimal(*m, exponent);
                 if (value < low * (1 - 1e-9) || value > high * (1 + 1e-9)) continue;
                 found++;
@@ -210,7 +213,7 @@ static void log_ticks(struct ticks *ticks, const struct request *request, uint32
         }
         if (found <= wanted) break;
     }
-    if (ticks->count >= 3) return;
+    if (ticks->count >= (wanted < 3 ? wanted : 3)) return;
     ticks->count = 0;
     ticks->exponent = common_exponent(low, high);
     linear_ticks(ticks, &(struct request){SCALE_LOG, {low, high}}, wanted, 0.5 / wanted);

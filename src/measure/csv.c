@@ -66,7 +66,8 @@ bool csv_save_grains(const char *path, const struct grains *grains, const struct
     struct file file;
     if (!file_begin(&file, path, error)) return false;
     fprintf(file.stream, "id,x,y,vx,vy,spin,radius,collision_rate,species\n"
-            "# units: 1,%s,%s,%s,%s,%s,%s,%s,1\n", length, length, speed, speed, rate, length, rate);
+            "# units: 1,%s,%s,%s,%s,%s,%s,%s,1\n",
+            length, length, speed, speed, rate, length, rate);
     for (uint32_t k = 0; k < grains->count; k++) {
         const double numbers[] = {grains->x[k], grains->y[k], grains->vx[k], grains->vy[k],
                                   grains->spin[k], grains->radius[k]};

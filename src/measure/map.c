@@ -17,7 +17,7 @@
 enum { PART_MAX = 8 };
 
 static const double parts_bytes_max = 64e6;     /* more memory than this is not worth a thread */
-static const double cells_max = 16777216;       /* 4096 x 4096: 1.7 GB of sums */
+static const double cells_max = 16777216;       /* 4096 x 4096: 2.1 GB of sums */
 static const double width_max = 64;             /* cells; wider kernels cost 1e5 cells a grain */
 static const uint32_t worth_threads = 20000;    /* grains */
 
@@ -94,8 +94,8 @@ static bool grid_set(struct map_grid *grid, const struct scene *scene,
     else if (periodic_y) cell = ly / fmax(1, round(ly / cell));
     const double nx = side_cells(lx, cell), ny = side_cells(ly, cell);
     if (nx * ny > cells_max) {
-        return error_set_code(error, EXIT_SCENE, "%s: a map of %.0f x %.0f cells is too large; make "
-            "measure.cell at least %.3g", scene->path, nx, ny, sqrt(lx * ly / cells_max));
+        return error_set_code(error, EXIT_SCENE, "%s: a map of %.0f x %.0f cells is too large; "
+            "make measure.cell at least %.3g", scene->path, nx, ny, sqrt(lx * ly / cells_max));
     }
     const double width = isnan(measure->width) ? 1 : measure->width / cell;
     if (measure->kernel != KERNEL_BOX && !(width > 0 && width <= width_max)) {

@@ -36,7 +36,8 @@ static struct line line_y(const struct map_grid *g)
 
 double map_kernel_reach(int kernel, double width)
 {
-    return kernel == KERNEL_GAUSS ? gauss_cut * width : kernel == KERNEL_LUCY ? lucy_cut * width : 0;
+    if (kernel == KERNEL_GAUSS) return gauss_cut * width;
+    return kernel == KERNEL_LUCY ? lucy_cut * width : 0;
 }
 
 static double line_share(struct line line, uint32_t i)
@@ -96,7 +97,7 @@ FORCE_INLINE void deposit(struct map_cell *cell, const struct grain *grain, doub
     if (cell->count == 0) {
         cell->first_vx = grain->vx;
         cell->first_vy = grain->vy;
-        cell->first_spin = grain->spin;
+        if (gather & MAP_GATHER_SPIN) cell->first_spin = grain->spin;
     }
     const double m = w * grain->mass;
     const double ux = grain->vx - cell->first_vx, uy = grain->vy - cell->first_vy;

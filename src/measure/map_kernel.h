@@ -16,15 +16,20 @@
 enum { MAP_GATHER_AREA = 1, MAP_GATHER_SPIN = 2, MAP_GATHER_RATE = 4, MAP_GATHER_ALL = 7 };
 
 /* What a cell has received.  Velocities are summed relative to that of the first grain, so the
- * variance of a fast uniform stream does not drown in the square of its mean. */
+ * variance of a fast uniform stream does not drown in the square of its mean.  What most fields
+ * need fills the first cache line. */
 struct map_cell {
-    double count, mass;                 /* sums of w and m w */
-    double first_vx, first_vy, first_spin;
+    _Alignas(64) double count;          /* sum of w */
+    double mass;                        /* m w */
+    double first_vx, first_vy;
     double momentum_x, momentum_y;      /* m w (v - first) */
     double energy;                      /* m w |v - first|^2 */
+    double area;                        /* of the discs in the cell */
+
+    double first_spin;
     double inertia;                     /* m R^2 w: the moment of inertia but for its factor */
     double angular, angular_energy;     /* inertia * (spin - first), ... squared */
-    double rate, area;                  /* w * collision rate; area of the discs in the cell */
+    double rate;                        /* w * collision rate */
 };
 
 struct map_grid {

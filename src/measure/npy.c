@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are written as they lie in memory");
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are written as they are");
 
 static const char magic[6] = "\x93NUMPY";
 static const uint64_t bytes_max = (uint64_t)1 << 36;
@@ -87,8 +87,8 @@ bool npy_save(const char *path, const char *type, const uint64_t *shape, uint32_
     char header[NPY_TYPE_MAX + 400];
     assert(width > 0);
     assert(dimensions <= NPY_DIMENSIONS_MAX);
-    int used = snprintf(header, sizeof header, "{'descr': %s%s%s, 'fortran_order': False, 'shape': (",
-                        quote, type, quote);
+    int used = snprintf(header, sizeof header,
+                        "{'descr': %s%s%s, 'fortran_order': False, 'shape': (", quote, type, quote);
     uint64_t count = 1;
     for (uint32_t d = 0; d < dimensions; d++) {
         count *= shape[d];

@@ -69,13 +69,17 @@ double quantile_at(const struct quantile *quantile, double p)
     const uint64_t rank = (uint64_t)ceil(share * (double)quantile->count);
     if (rank <= 1) return quantile->low;
     if (rank >= quantile->count) return quantile->high;
+    /* From the smallest upwards: negative values by falling magnitude, then the others.  Bins below
+     * that of the smallest are empty and passed over. */
     uint64_t seen = 0;
     double value = 0;
-    for (uint32_t k = 0; k < BINS && seen < rank; k++) {
-        seen += quantile->negative[BINS - 1 - k];
-        value = -bin_middle(BINS - 1 - k);
+    if (quantile->low < 0) {
+        for (uint32_t k = bin_of(-quantile->low) + 1; k-- > 0 && seen < rank;) {
+            seen += quantile->negative[k];
+            value = -bin_middle(k);
+        }
     }
-    for (uint32_t k = 0; k < BINS && seen < rank; k++) {
+    for (uint32_t k = quantile->low > 0 ? bin_of(quantile->low) : 0; k < BINS && seen < rank; k++) {
         seen += quantile->positive[k];
         value = bin_middle(k);
     }

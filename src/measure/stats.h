@@ -31,7 +31,7 @@ struct stats_line {
 struct stats_line stats_line(const double *x, const double *y, size_t count);
 
 struct stats_parabola {
-    double curvature, slope, offset;    /* y = offset + slope (x - middle) + curvature (x - middle)^2 */
+    double offset, slope, curvature;    /* y = offset + slope u + curvature u^2, u = x - middle */
     double middle;
     double top, top_error;      /* where y is largest; NAN if it curves upwards */
     double height, height_error;

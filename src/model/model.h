@@ -37,7 +37,8 @@ struct model {
     const struct key_group *settings;   /* its own keys in a scene file; NULL: none */
 
     /* Completes its settings where the scene left them open (time step, stiffness) and tells what
-     * cannot be right about them; part of `check`.  May be NULL. */
+     * cannot be right about them; part of `check`.  Called for the scene and then for each of its
+     * later phases.  May be NULL. */
     void (*resolve)(struct scene *scene, struct findings *findings);
 
     /* Bytes that create() will ask for, about.  May be NULL. */

@@ -16,16 +16,16 @@
 
 enum { REPEATS_MAX = 25 };
 
-/* Simulates the scene for the case's time; work is counted as the model counts it. */
+/* Simulates the scene for the case's time; work is the model's steps, or each grain's. */
 static bool measure_model(const struct bench_case *which, struct bench_result *result,
                           struct error *error)
 {
     char model[64];
     snprintf(model, sizeof model, "model=%s", which->model);
-    const char *const overrides[] = {model};
+    const char *const overrides[] = {model, which->set};
     struct setup setup;
-    const struct setup_request request = {.path = which->name, .text = which->text,
-        .overrides = overrides, .override_count = 1, .place = true};
+    const struct setup_request request = {.path = which->scene, .text = which->text,
+        .overrides = overrides, .override_count = which->set ? 2 : 1, .place = true};
     struct simulation sim = {0};
     bool done = setup_load(&setup, &request, error)
         && simulation_create(&sim, setup.model, setup.scene, error);
@@ -39,9 +39,8 @@ static bool measure_model(const struct bench_case *which, struct bench_result *r
         result->cpu = clock_process() - cpu;
         result->wall = clock_wall() - wall;
         const struct counters after = simulation_count(&sim);
-        const bool each = strstr(setup.model->work, "particle") != NULL;
         const double work = (double)(after.steps - before.steps)
-                          * (each ? (double)after.grains : 1);
+                          * (which->per_grain ? (double)after.grains : 1);
         result->value = work / fmax(result->cpu, 1e-9);
     }
     if (sim.state) simulation_destroy(&sim);
@@ -51,7 +50,8 @@ static bool measure_model(const struct bench_case *which, struct bench_result *r
 
 static const char square_scene[] =
     "model = \"md\"; until = 1.0; box = (0.0, 0.0, 1000.0, 1000.0);\n"
-    "grains = ({ radius = 0.4; restitution = 0.9; });\n";
+    "grains = ({ radius = 0.4; restitution = 0.9; });\n"
+    "placements = ({ count = 1; });\n";
 
 /* Grains thrown at random into a square, mapped with the default kernel. */
 static bool measure_map(const struct bench_case *which, struct bench_result *result,
@@ -147,15 +147,18 @@ static const char gas_scene[] =
 
 const struct bench_case bench_list[] = {
     {"md-gas", "20,000 dissipative discs, area fraction 0.2, periodic", "particle-steps/cpu-s",
-     true, measure_model, gas_scene, "md", 2.0},
-    {"lga-hourglass", "the hourglass as a lattice gas", "ticks/cpu-s", true, measure_model, NULL,
-     "lga", 0.5},
-    {"map-1e6", "temperature map of 1,000,000 grains", "cpu-ms", false, measure_map, NULL, NULL, 1e6},
-    {"png", "encoding a frame of 1280 x 720, level 1", "cpu-ms", false, measure_png, NULL, NULL, 0},
+     true, measure_model, .scene = "md-gas", .text = gas_scene, .model = "md", .amount = 0.05,
+     .per_grain = true},
+    {"lga-hourglass", "the hourglass with 20,000 grains as a lattice gas", "ticks/cpu-s", true,
+     measure_model, .scene = "hourglass", .set = "grains.[0].radius=[0.018, 0.027]",
+     .model = "lga", .amount = 3},
+    {"map-1e6", "temperature map of 1,000,000 grains", "cpu-ms", false, measure_map, .amount = 1e6},
+    {"png", "encoding a frame of 1280 x 720, level 1", "cpu-ms", false, measure_png,
+     .amount = 1},
     {"frame-5e3", "drawing and encoding 5,000 grains, 1280 x 720", "cpu-ms", false, measure_frame,
-     NULL, NULL, 5e3},
+     .amount = 5e3},
     {"frame-1e5", "drawing and encoding 100,000 grains, 1280 x 720", "cpu-ms", false, measure_frame,
-     NULL, NULL, 1e5},
+     .amount = 1e5},
     {0}
 };
 

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 struct bench_result {
@@ -20,9 +21,10 @@ struct bench_case {
     bool larger_is_better;
     bool (*measure)(const struct bench_case *which, struct bench_result *result,
                     struct error *error);
-    const char *text;           /* what the measuring function needs: a scene ... */
-    const char *model;
+    const char *scene, *text;   /* what the measuring function needs: a scene, built in or text, */
+    const char *set, *model;    /* with an override (NULL: none) and a model ... */
     double amount;              /* ... simulated time, a number of grains */
+    bool per_grain;             /* work is steps times grains */
 };
 
 extern const struct bench_case bench_list[];    /* ends with a NULL name */

@@ -33,7 +33,9 @@ static bool encode(const struct image *image, const struct encoder_job *job, str
     }
     uint8_t *bytes;
     size_t size;
-    if (!image_encode(image, job->level, notes, job->note_count, &bytes, &size, error)) return false;
+    if (!image_encode(image, job->level, notes, job->note_count, &bytes, &size, error)) {
+        return false;
+    }
     const bool done = file_save(job->path, bytes, size, error);
     free(bytes);
     return done;

@@ -85,7 +85,9 @@ bool folder_claim(const char *directory, bool force, struct error *error)
     }
     static const char *const folders[] = {"frames", "maps", "dump", "checkpoint"};
     static const char *const files[] = {"scene.cfg", "manifest.json", "log.csv", "broken.png"};
-    for (size_t k = 0; k < sizeof folders / sizeof *folders; k++) folder_clear(directory, folders[k]);
+    for (size_t k = 0; k < sizeof folders / sizeof *folders; k++) {
+        folder_clear(directory, folders[k]);
+    }
     for (size_t k = 0; k < sizeof files / sizeof *files; k++) folder_remove(directory, files[k]);
     return true;
 }

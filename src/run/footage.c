@@ -6,9 +6,8 @@
 #include "run/look.h"
 
 #include <math.h>
-#include <string.h>
 
-static bool has_dumps(const char *path)
+bool footage_has_dumps(const char *path)
 {
     char index[FILE_PATH_MAX];
     return setup_is_run(path) && file_exists(folder_path(index, path, "dump/index.csv"));
@@ -18,7 +17,7 @@ bool footage_open(struct footage *footage, const struct setup *setup, const char
                  bool contacts, struct error *error)
 {
     *footage = (struct footage){.setup = setup, .contacts = contacts};
-    footage->from_dumps = has_dumps(path);
+    footage->from_dumps = footage_has_dumps(path);
     footage->wall = footage->from_dumps ? NAN : 0;
     if (footage->from_dumps) return dumps_open(&footage->dumps, path, error);
     return simulation_create(&footage->sim, setup->model, setup->scene, error);
@@ -27,7 +26,8 @@ bool footage_open(struct footage *footage, const struct setup *setup, const char
 double footage_end(const struct footage *footage)
 {
     const struct dump_index *index = &footage->dumps.index;
-    return footage->from_dumps ? index->entries[index->count - 1].time : footage->setup->scene->until;
+    if (!footage->from_dumps) return footage->setup->scene->until;
+    return index->entries[index->count - 1].time;
 }
 
 void footage_close(struct footage *footage)
@@ -42,11 +42,10 @@ static void tell(struct footage *footage, double t)
     if (!footage->report) return;
     const struct counters now = simulation_count(&footage->sim);
     const double share = t > 0 ? now.time / t : 1;
-    const bool each = strstr(footage->sim.model->work, "particle") != NULL;
-    const double work = (double)now.steps * (each ? (double)now.grains : 1);
     const struct run_status status = {
         .doing = "simulating", .work = footage->sim.model->work, .time = now.time, .until = t,
-        .share = share, .rate = footage->wall > 0 ? work / footage->wall : 0, .wall = footage->wall,
+        .share = share, .rate = footage->wall > 0 ? (double)now.steps / footage->wall : 0,
+        .wall = footage->wall,
         .eta = share > 0 ? footage->wall * (1 - share) / share : NAN, .steps = now.steps,
         .grains = now.grains,
     };

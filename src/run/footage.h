@@ -1,5 +1,5 @@
-/* footage.h - grains at a time, from a run's dumps or simulated on the fly: what frame, movie and map
- * draw from, without asking which. */
+/* footage.h - grains at a time, from a run's dumps or simulated on the fly: what frame, movie and
+ * map draw from, without asking which. */
 #ifndef FOOTAGE_H
 #define FOOTAGE_H
 
@@ -22,6 +22,9 @@ struct footage {
     void    *context;
     const volatile sig_atomic_t *signal;        /* may be NULL */
 };
+
+/* Is there a run with dumps at `path`? */
+bool footage_has_dumps(const char *path);
 
 /* `path` is what the setup was loaded from: a run directory with dumps is read, anything else
  * simulated.  Set report, context and signal afterwards. */

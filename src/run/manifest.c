@@ -79,10 +79,11 @@ bool manifest_save(const struct manifest *manifest, const char *directory, struc
     char path[FILE_PATH_MAX];
     folder_path(path, directory, "manifest.json");
     json_t *root = describe(manifest);
-    char *text = root ? json_dumps(root, JSON_INDENT(4) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(9))
-                      : NULL;
+    char *text = root ? json_dumps(root, JSON_INDENT(4) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(root);
-    if (!text) return error_set(error, "%s: cannot be put together (a name that is not UTF-8?)", path);
+    if (!text) {
+        return error_set(error, "%s: cannot be put together (a name that is not UTF-8?)", path);
+    }
     struct file file;
     bool done = file_begin(&file, path, error);
     if (done) {

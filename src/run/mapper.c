@@ -89,7 +89,10 @@ void mapper_close(struct mapper *mapper)
 
 void mapper_clear(struct mapper *mapper) { map_clear(mapper->map); }
 
-void mapper_add(struct mapper *mapper, const struct grains *grains) { map_add(mapper->map, grains); }
+void mapper_add(struct mapper *mapper, const struct grains *grains)
+{
+    map_add(mapper->map, grains);
+}
 
 static bool draw(struct mapper *mapper, const struct field *field, const char *path,
                  struct error *error)

@@ -134,7 +134,9 @@ static bool load_checkpoint(struct run *run)
     void *bytes;
     size_t size;
     folder_path(path, run->directory, "checkpoint");
-    if (!checkpoint_load(path, run->scene_hash, &bytes, &size, &run->turn, run->error)) return false;
+    if (!checkpoint_load(path, run->scene_hash, &bytes, &size, &run->turn, run->error)) {
+        return false;
+    }
     run->turn++;
     struct archive archive;
     archive_begin_load(&archive, bytes, size);
@@ -162,18 +164,10 @@ static void report(struct run *run, const char *doing, double share)
     request->report(request->context, &status);
 }
 
-/* Work is counted in steps, and for models that step all grains at once in grains times steps. */
-static double work_of(const struct run *run, const struct counters *now, uint64_t steps)
-{
-    const bool each = strstr(run->request->model->work, "particle") != NULL;
-    return (double)steps * (each ? (double)now->grains : 1);
-}
-
 /* The next piece is made to take about piece_seconds. */
 static void adapt(struct run *run, double took, uint64_t steps)
 {
-    const struct counters now = simulation_count(&run->sim);
-    run->work_done += work_of(run, &now, steps);
+    run->work_done += (double)steps;
     if (took < piece_seconds / 2 && steps >= run->budget && run->budget < UINT64_MAX / 4) {
         run->budget *= 2;
     } else if (took > 2 * piece_seconds && run->budget > 1) {
@@ -319,14 +313,14 @@ static bool carry_out(struct run *run, struct run_result *result)
 {
     const struct run_request *request = run->request;
     struct manifest manifest = {run->scene, request->model, "running", run->scene_hash, NULL};
-    if (!manifest_save(&manifest, run->directory, run->error)) return false;
     if (!writer_open(&run->writer, &run->sim, run->directory, request->threads, request->resume,
                      &run->parts, run->error)) {
         return false;
     }
+    if (!manifest_save(&manifest, run->directory, run->error)) return false;
     if (request->resume && !load_checkpoint(run)) return false;
     run->time_start = simulation_count(&run->sim).time;
-    run->start = run->rate_mark = run->checkpoint_wall = clock_wall();
+    run->rate_mark = run->checkpoint_wall = clock_wall();
     bool done = simulate(run);
     if (done) done = writer_finish(&run->writer, wall_now(run), drawn_one, run, run->error);
     fill_result(run, result);

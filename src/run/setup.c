@@ -2,6 +2,7 @@
 #include "run/setup.h"
 
 #include "base/file.h"
+#include "run/recall.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -52,6 +53,19 @@ static void resolve(struct setup *setup)
     }
 }
 
+/* A run's scene keeps the name of the scene it was made from, not that of its file scene.cfg. */
+static void keep_name(struct setup *setup, const char *run)
+{
+    struct error ignored;
+    json_t *manifest = recall_manifest(run, &ignored);
+    const char *name = json_string_value(json_object_get(manifest, "scene"));
+    for (uint32_t p = 0; name && p < setup->scene->phase_count; p++) {
+        struct scene *scene = setup->scene->phases[p];
+        snprintf(scene->name, sizeof scene->name, "%s", name);
+    }
+    json_decref(manifest);
+}
+
 bool setup_load(struct setup *setup, const struct setup_request *request, struct error *error)
 {
     *setup = (struct setup){0};
@@ -70,6 +84,7 @@ bool setup_load(struct setup *setup, const struct setup_request *request, struct
         wanted.path = inside;
     }
     setup->scene = scene_load(&wanted, setup->findings);
+    if (setup->scene && is_run) keep_name(setup, request->path);
     if (setup->scene) resolve(setup);
     if (setup->scene && setup->findings->errors == 0) return true;
     return error_set_code(error, EXIT_SCENE, "%s: %u error%s, %u warning%s", request->path,

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "run/folder.h"
 #include "run/look.h"
+#include "run/recall.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -86,7 +87,13 @@ static bool open_pictures(struct writer *writer, bool resume, struct error *erro
         && (!movie_name_ok(scene->output.movie, error) || !movie_available(error))) {
         return false;
     }
-    if (!film_open(&writer->film, scene, writer->sim->model, &scene->view, error)) return false;
+    struct view view = scene->view;
+    char path[FILE_PATH_MAX];
+    folder_path(path, writer->directory, "dump/index.csv");
+    /* A finished run that is made longer has its colours already; without its grains they cannot
+     * be found anew, so the new frames take them over. */
+    if (resume && !file_exists(path)) recall_range(writer->directory, scene, &view);
+    if (!film_open(&writer->film, scene, writer->sim->model, &view, error)) return false;
     writer->draws_later = film_needs_gathering(&writer->film);
     writer->keeps_grains = scene->output.dump || writer->draws_later;
     writer->movie_late = *scene->output.movie && resume && !writer->draws_later;
@@ -101,7 +108,10 @@ bool writer_open(struct writer *writer, const struct simulation *sim, const char
     snprintf(writer->directory, sizeof writer->directory, "%s", directory);
     set_schedules(writer, scene);
     writer->encoder = encoder_create(encoders, error);
-    if (!writer->encoder || !open_pictures(writer, resume, error)) return false;
+    if (!writer->encoder) return false;
+    const enum part before = enter(writer, PART_draw);
+    if (!open_pictures(writer, resume, error)) return false;
+    enter(writer, before);
     const unsigned formats = 1 << MAPPER_BIT_png | 1 << MAPPER_BIT_npy | 1 << MAPPER_BIT_vti;
     if (writer->schedules[WRITER_MAP].interval > 0
         && !mapper_open(&writer->mapper, scene, &scene->view, &scene->measure, formats, error)) {

@@ -70,14 +70,16 @@ static void check_species(struct check check, const struct species *species)
     const struct scene *scene = check.scene;
     const bool radius = !isnan(species->radius[0]), radii = species->radii.count > 0;
     if (radius && radii) ERROR("radii", "both 'radius' and 'radii' are given; delete one");
-    if (!radius && !radii) ERROR("", "'radius' is missing; add radius = r; or radius = (low, high);");
+    if (!radius && !radii) {
+        ERROR("", "'radius' is missing; add radius = r; or radius = (low, high);");
+    }
     if (!isnan(species->restitution) && !isnan(species->damping)) {
         ERROR("damping", "'restitution' and 'damping' both say how much energy a collision loses; "
               "delete one");
     }
     if (isnan(species->restitution) && isnan(species->damping)) {
-        ERROR("", "it is not said how much energy a collision loses; add restitution = ... (1: none), "
-              "or stiffness and damping");
+        ERROR("", "it is not said how much energy a collision loses; add restitution = ... "
+              "(1: none), or stiffness and damping");
     }
     if (!isnan(species->damping) && isnan(species->stiffness)) {
         ERROR("damping", "'damping' has a meaning only beside a 'stiffness'; add it, or give "
@@ -124,7 +126,8 @@ static void check_placement(struct check check, const struct placement *placemen
     const bool region = !isnan(placement->region[0]);
     if (placement->outline.count) check_outline(check, placement);
     else if (region && runs_backwards(placement->region)) {
-        ERROR("region", "(%g, %g, %g, %g) is empty or runs backwards; write left, bottom, right, top",
+        ERROR("region",
+              "(%g, %g, %g, %g) is empty or runs backwards; write left, bottom, right, top",
               placement->region[0], placement->region[1], placement->region[2],
               placement->region[3]);
         return;
@@ -181,11 +184,15 @@ static void check_shape(struct check check, const struct wall_entry *entry)
     const bool row = strcmp(entry->shape, "row") == 0, arc = strcmp(entry->shape, "arc") == 0,
                disc = strcmp(entry->shape, "disc") == 0;
     const bool ends = !isnan(entry->from[0]) && !isnan(entry->to[0]);
-    if ((row || arc || disc) && isnan(entry->radius)) ERROR("", "a %s needs a 'radius'", entry->shape);
+    if ((row || arc || disc) && isnan(entry->radius)) ERROR("", "a %s needs a 'radius'",
+                                                            entry->shape);
     if ((arc || disc) && isnan(entry->center[0])) ERROR("", "a %s needs a 'center'", entry->shape);
-    if (row && !ends) ERROR("", "a row needs 'from' and 'to', the centres of its first and last disc");
+    if (row && !ends) {
+        ERROR("", "a row needs 'from' and 'to', the centres of its first and last disc");
+    }
     if (arc && !(entry->angles[1] > entry->angles[0])) {
-        ERROR("angles", "(%g, %g): an arc runs counter-clockwise, so the second angle must be larger",
+        ERROR("angles",
+              "(%g, %g): an arc runs counter-clockwise, so the second angle must be larger",
               entry->angles[0], entry->angles[1]);
     }
     if (arc && entry->angles[1] - entry->angles[0] > 360) {
@@ -202,8 +209,8 @@ static void check_shape(struct check check, const struct wall_entry *entry)
     const double *p = entry->points.values;
     for (uint32_t k = 1; k < points; k++) {
         if (p[2 * k] == p[2 * k - 2] && p[2 * k + 1] == p[2 * k - 1]) {
-            ERROR("points", "points %u and %u are the same, (%g, %g); delete one", k, k + 1, p[2 * k],
-                  p[2 * k + 1]);
+            ERROR("points", "points %u and %u are the same, (%g, %g); delete one", k, k + 1,
+                  p[2 * k], p[2 * k + 1]);
         }
     }
     if (!points && ends && entry->from[0] == entry->to[0] && entry->from[1] == entry->to[1]) {
@@ -217,10 +224,12 @@ static void check_wall(struct check check, const struct wall_entry *entry)
     check_name(check, entry->grains);
     if (entry->closes < entry->opens) {
         if (isinf(entry->opens)) ERROR("closes", "the gate closes but never opens; add 'opens'");
-        else ERROR("closes", "the gate closes (%g) before it opens (%g)", entry->closes, entry->opens);
+        else ERROR("closes", "the gate closes (%g) before it opens (%g)", entry->closes,
+                   entry->opens);
     }
-    if (entry->moves[1] < entry->moves[0]) ERROR("moves", "(%g, %g) runs backwards", entry->moves[0],
-                                                 entry->moves[1]);
+    if (entry->moves[1] < entry->moves[0]) {
+        ERROR("moves", "(%g, %g) runs backwards", entry->moves[0], entry->moves[1]);
+    }
     const bool shakes = entry->amplitude[0] != 0 || entry->amplitude[1] != 0;
     if (shakes && entry->frequency == 0) {
         WARNING("amplitude", "the wall does not shake without a 'frequency'");
@@ -247,7 +256,9 @@ static void check_walls_reachable(struct check check)
 
 static void check_screen(struct check check, const struct screen *screen)
 {
-    if (screen->kind == SCREEN_CIRCLE && isnan(screen->radius)) ERROR("", "a circle needs a 'radius'");
+    if (screen->kind == SCREEN_CIRCLE && isnan(screen->radius)) {
+        ERROR("", "a circle needs a 'radius'");
+    }
     if (screen->kind == SCREEN_LINE && isnan(screen->x)) ERROR("", "a line needs 'x'");
     if (screen->bins == 0) ERROR("bins", "there must be one bin or more");
 }
@@ -255,7 +266,8 @@ static void check_screen(struct check check, const struct screen *screen)
 static void check_sink(struct check check, const struct sink *sink)
 {
     if (!isnan(sink->region[0]) && runs_backwards(sink->region)) {
-        ERROR("region", "(%g, %g, %g, %g) is empty or runs backwards; write left, bottom, right, top",
+        ERROR("region",
+              "(%g, %g, %g, %g) is empty or runs backwards; write left, bottom, right, top",
               sink->region[0], sink->region[1], sink->region[2], sink->region[3]);
     }
 }
@@ -269,7 +281,8 @@ static void check_borders(struct check check)
     const bool y_low = scene->bottom == BORDER_PERIODIC, y_high = scene->top == BORDER_PERIODIC;
     if (x_left != x_right) ERROR(x_left ? "left" : "right", "'left' and 'right' must both be "
                                  "periodic, or neither");
-    if (y_low != y_high) ERROR(y_low ? "bottom" : "top", "'bottom' and 'top' must both be periodic, "
+    if (y_low != y_high) ERROR(y_low ? "bottom" : "top",
+                               "'bottom' and 'top' must both be periodic, "
                                "or neither");
     /* With less, a grain could touch another one from both sides. */
     const double least = 6 * scene->radius_max;
@@ -278,7 +291,8 @@ static void check_borders(struct check check)
         ERROR("box", "a periodic box must be at least 3 diameters (%g) wide, not %g", least, width);
     }
     if (y_low && y_high && height < least) {
-        ERROR("box", "a periodic box must be at least 3 diameters (%g) high, not %g", least, height);
+        ERROR("box", "a periodic box must be at least 3 diameters (%g) high, not %g", least,
+              height);
     }
 }
 
@@ -291,18 +305,21 @@ static void check_view(struct check check)
         }
     }
     if (!isnan(view->window[0]) && runs_backwards(view->window)) {
-        ERROR("view.window", "'view.window' is empty or runs backwards; write left, bottom, right, top");
+        ERROR("view.window",
+              "'view.window' is empty or runs backwards; write left, bottom, right, top");
     }
     if (view->range[1] <= view->range[0]) {
         ERROR("view.range", "'view.range' = (%g, %g) is empty or runs backwards", view->range[0],
               view->range[1]);
     }
     if (view->scale == SCALE_LOG && view->range[0] <= 0) {
-        ERROR("view.range", "a logarithmic scale cannot begin at %g; begin above 0", view->range[0]);
+        ERROR("view.range", "a logarithmic scale cannot begin at %g; begin above 0",
+              view->range[0]);
     }
     const double *average = check.scene->measure.average;
     if (average[1] <= average[0]) {
-        ERROR("measure.average", "'measure.average' = (%g, %g) is empty or runs backwards", average[0],
+        ERROR("measure.average", "'measure.average' = (%g, %g) is empty or runs backwards",
+              average[0],
               average[1]);
     }
 }
@@ -374,8 +391,8 @@ void check_scene(const struct scene *scene, struct findings *findings)
     EACH(species, species_count, "grains", check_species)
     const bool box = !isnan(scene->box[0] + scene->box[1] + scene->box[2] + scene->box[3]);
     if (box && runs_backwards(scene->box)) {
-        ERROR("box", "'box' = (%g, %g, %g, %g) is empty or runs backwards; write left, bottom, right, "
-              "top", scene->box[0], scene->box[1], scene->box[2], scene->box[3]);
+        ERROR("box", "'box' = (%g, %g, %g, %g) is empty or runs backwards; write left, bottom, "
+              "right, top", scene->box[0], scene->box[1], scene->box[2], scene->box[3]);
     }
     if (!box || runs_backwards(scene->box)) return;     /* nothing can be compared with it */
     EACH(placements, placement_count, "placements", check_placement)
@@ -393,7 +410,8 @@ void check_scene(const struct scene *scene, struct findings *findings)
 /* ---- phases -------------------------------------------------------------------------------- */
 
 /* What a phase cannot change, because the grains are there already. */
-static const char *const fixed_keys[] = {"placements", "box", "seed", "phases", "quick", "quick_set",
+static const char *const fixed_keys[] = {"placements", "box", "seed", "phases", "quick",
+                                         "quick_set",
                                          "count_max", "units", "until", "model", "title"};
 
 static void check_phase(struct check check, const struct phase_entry *entry)
@@ -401,11 +419,13 @@ static void check_phase(struct check check, const struct phase_entry *entry)
     const struct scene *scene = check.scene;
     const struct phase_entry *last = check.index ? entry - 1 : NULL;
     if (last && entry->time <= last->time) {
-        ERROR("time", "phases must be in the order of time, but %g does not come after %g", entry->time,
+        ERROR("time", "phases must be in the order of time, but %g does not come after %g",
+              entry->time,
               last->time);
     }
     if (entry->time >= scene->until) {
-        WARNING("time", "the phase begins at %g, but the run ends at %g", entry->time, scene->until);
+        WARNING("time", "the phase begins at %g, but the run ends at %g", entry->time,
+                scene->until);
     }
     for (uint32_t k = 0; k < entry->set.count; k++) {
         const char *text = entry->set.texts[k];
@@ -446,6 +466,7 @@ void check_phase_findings(const struct scene *scene, uint32_t phase, const struc
     for (uint32_t k = 0; k < kept; k++) {
         const struct finding *finding = &own->list[k];
         if (was_told(findings, finding)) continue;
-        findings_tell(findings, scene, finding->kind, key, "phases.[%u]: %s", phase - 1, finding->text);
+        findings_tell(findings, scene, finding->kind, key, "phases.[%u]: %s", phase - 1,
+                      finding->text);
     }
 }

@@ -12,7 +12,8 @@ const char *key_type_word(enum key_type type)
         [KEY_WORD64] = "a whole number, 0 or more", [KEY_BOOL] = "true or false",
         [KEY_CHOICE] = "a word", [KEY_TEXT] = "a text", [KEY_VECTOR] = "two numbers (x, y)",
         [KEY_BOX] = "four numbers (x0, y0, x1, y1)",
-        [KEY_RANGE] = "a number or a range (low, high)", [KEY_REALS] = "a list of numbers (a, b, ...)",
+        [KEY_RANGE] = "a number or a range (low, high)",
+        [KEY_REALS] = "a list of numbers (a, b, ...)",
         [KEY_POINTS] = "a list of points ((x, y), (x, y), ...)",
         [KEY_TEXTS] = "a list of texts (\"a\", \"b\", ...)",
     };
@@ -57,7 +58,8 @@ char *key_limits(const struct key *key, char *text, size_t size)
         text[used < size ? used : size - 1] = 0;
         return text;
     }
-    const bool low = !isnan(key->low), high = !isnan(key->high);
+    /* Limits that only keep squares from overflowing are nobody's business. */
+    const bool low = fabs(key->low) < 1e30, high = fabs(key->high) < 1e30;
     text[0] = 0;
     if (low && key->low == KEY_POSITIVE) {
         if (high) snprintf(text, size, "greater than 0, at most %.10g", key->high);

@@ -9,7 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-struct override { const char *text, *file; int line; struct findings *findings; struct arena *arena; };
+struct override { const char *text,
+                 *file; int line; struct findings *findings; struct arena *arena; };
 
 static void tell(const struct override *o, const char *why)
 {

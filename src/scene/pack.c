@@ -20,9 +20,11 @@
 #define STEP 0.25               /* of time; a contact of two discs lasts pi/sqrt(2) = 2.2 */
 #define HEAT 1e-3               /* kT while shaking: overlaps of about 3 % of a diameter */
 #define SKIN 0.3                /* of the list of neighbours */
+#define LOOSE 0.6               /* below this area fraction there is no need to shake for long */
+#define HOPELESS 3e-3           /* an overlap that a third of the relaxation has not removed */
 #define START 0.75              /* of their final size, discs begin */
 
-enum { GROW_STEPS = 2500, RELAX_STEPS = 3000, TRIES = 5 };
+enum { LOOSE_STEPS = 400, DENSE_STEPS = 2000, RELAX_STEPS = 3000, TRIES = 5 };
 
 struct pair { uint32_t i, j; };
 
@@ -36,11 +38,13 @@ struct packing {
     struct pair *pairs;         /* discs that may meet */
     struct pair *touches;       /* disc i and side or wall j that may meet; sides come first */
     double  width, height, overlap_max;
+    bool    wraps_x, wraps_y;
 };
 
 /* ---- lists --------------------------------------------------------------------------------- */
 
-static bool list_add(struct pair **list, uint32_t *count, uint32_t *capacity, uint32_t i, uint32_t j)
+static bool list_add(struct pair **list, uint32_t *count, uint32_t *capacity, uint32_t i,
+                     uint32_t j)
 {
     if (*count == *capacity) {
         const uint32_t larger = *capacity ? 2 * *capacity : 65536;
@@ -53,12 +57,21 @@ static bool list_add(struct pair **list, uint32_t *count, uint32_t *capacity, ui
     return true;
 }
 
+/* Discs stay within a box length of where they began until they are wrapped at the end, hence two
+ * comparisons instead of a division and a rounding. */
+static double nearest_image(double d, double length)
+{
+    while (d > 0.5 * length) d -= length;
+    while (d < -0.5 * length) d += length;
+    return d;
+}
+
 static void apart(const struct packing *p, uint32_t i, uint32_t j, double *dx, double *dy)
 {
     *dx = p->x[i] - p->x[j];
     *dy = p->y[i] - p->y[j];
-    if (p->pack->wraps_x) *dx -= p->width * rint(*dx / p->width);
-    if (p->pack->wraps_y) *dy -= p->height * rint(*dy / p->height);
+    if (p->wraps_x) *dx = nearest_image(*dx, p->width);
+    if (p->wraps_y) *dy = nearest_image(*dy, p->height);
 }
 
 struct cells { uint32_t nx, ny, *first, *next; double x0, y0, wx, wy; };
@@ -80,8 +93,8 @@ static bool cells_fill(struct packing *p, struct cells *cells)
         y1 = fmax(y1, p->y[i]);
         radius_max = fmax(radius_max, p->radius[i]);
     }
-    if (p->pack->wraps_x) x0 = p->pack->box[0] / p->unit, x1 = x0 + p->width;
-    if (p->pack->wraps_y) y0 = p->pack->box[1] / p->unit, y1 = y0 + p->height;
+    if (p->wraps_x) x0 = p->pack->box[0] / p->unit, x1 = x0 + p->width;
+    if (p->wraps_y) y0 = p->pack->box[1] / p->unit, y1 = y0 + p->height;
     const double reach = 2 * radius_max * (1 + MARGIN) + SKIN;
     const double most = 4 * sqrt(p->all) + 16;          /* a long thin region needs no more */
     cells->x0 = x0;
@@ -98,8 +111,8 @@ static bool cells_fill(struct packing *p, struct cells *cells)
     cells->next = calloc(p->all, sizeof *cells->next);
     if (!cells->first || !cells->next) return false;
     for (uint32_t i = p->all; i-- > 0;) {
-        const uint32_t c = cell_index(p->y[i], y0, cells->wy, cells->ny, p->pack->wraps_y) * cells->nx
-                         + cell_index(p->x[i], x0, cells->wx, cells->nx, p->pack->wraps_x);
+        const uint32_t c = cell_index(p->y[i], y0, cells->wy, cells->ny, p->wraps_y) * cells->nx
+                         + cell_index(p->x[i], x0, cells->wx, cells->nx, p->wraps_x);
         cells->next[i] = cells->first[c];
         cells->first[c] = i + 1;
     }
@@ -121,10 +134,12 @@ static uint32_t around(uint32_t k, uint32_t count, bool wraps, uint32_t cells[3]
 
 static bool list_neighbours(struct packing *p, const struct cells *cells, uint32_t i)
 {
-    const bool wx = p->pack->wraps_x, wy = p->pack->wraps_y;
+    const bool wx = p->wraps_x, wy = p->wraps_y;
     uint32_t columns[3], rows[3];
-    const uint32_t nc = around(cell_index(p->x[i], cells->x0, cells->wx, cells->nx, wx), cells->nx, wx, columns);
-    const uint32_t nr = around(cell_index(p->y[i], cells->y0, cells->wy, cells->ny, wy), cells->ny, wy, rows);
+    const uint32_t nc = around(cell_index(p->x[i], cells->x0, cells->wx, cells->nx, wx), cells->nx,
+                               wx, columns);
+    const uint32_t nr = around(cell_index(p->y[i], cells->y0, cells->wy, cells->ny, wy), cells->ny,
+                               wy, rows);
     for (uint32_t k = 0; k < nr * nc; k++) {
         const uint32_t cell = rows[k / nc] * cells->nx + columns[k % nc];
         for (uint32_t j1 = cells->first[cell]; j1; j1 = cells->next[j1 - 1]) {
@@ -227,8 +242,8 @@ static void wrap(struct packing *p)
 {
     const double x0 = p->pack->box[0] / p->unit, y0 = p->pack->box[1] / p->unit;
     for (uint32_t i = 0; i < p->pack->count; i++) {
-        if (p->pack->wraps_x) p->x[i] -= p->width * floor((p->x[i] - x0) / p->width);
-        if (p->pack->wraps_y) p->y[i] -= p->height * floor((p->y[i] - y0) / p->height);
+        if (p->wraps_x) p->x[i] -= p->width * floor((p->x[i] - x0) / p->width);
+        if (p->wraps_y) p->y[i] -= p->height * floor((p->y[i] - y0) / p->height);
     }
 }
 
@@ -300,13 +315,15 @@ static bool relax(struct packing *p, bool *memory)
         forces(p);
         /* With radii R (1 + m), an overlap of m R (1 + m) leaves the true discs apart. */
         if (p->overlap_max < 0.9 * MARGIN) return true;
+        if (k > RELAX_STEPS / 3 && p->overlap_max > HOPELESS) return false;
         double power = 0, ff = 0, vv = 0;
         for (uint32_t i = 0; i < p->pack->count; i++) {
             power += p->fx[i] * p->vx[i] + p->fy[i] * p->vy[i];
             ff += p->fx[i] * p->fx[i] + p->fy[i] * p->fy[i];
             vv += p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i];
         }
-        const double turn = power > 0 && ff > 0 ? mix * sqrt(vv / ff) : 0, keep = power > 0 ? 1 - mix : 0;
+        const double turn = power > 0 && ff > 0 ? mix * sqrt(vv / ff) : 0, keep = power > 0
+            ? 1 - mix : 0;
         for (uint32_t i = 0; i < p->pack->count; i++) {
             p->vx[i] = keep * p->vx[i] + turn * p->fx[i];
             p->vy[i] = keep * p->vy[i] + turn * p->fy[i];
@@ -337,6 +354,8 @@ static bool packing_take(struct packing *p)
     }
     p->width = (pack->box[2] - pack->box[0]) / p->unit;
     p->height = (pack->box[3] - pack->box[1]) / p->unit;
+    p->wraps_x = pack->wraps_x;
+    p->wraps_y = pack->wraps_y;
     return lists_build(p);
 }
 
@@ -347,9 +366,10 @@ enum pack_outcome pack_solve(struct pack *pack, double *scale)
     bool memory = !packing_take(&p);
     *scale = 0;
     for (uint32_t round = 0; round < TRIES && !memory && outcome == PACK_JAMMED; round++) {
-        /* Later rounds loosen the packing a little and shake longer. */
+        /* Later rounds loosen the packing a little and shake twice as long. */
         const double from = round ? 0.97 : START;
-        memory = !shake(&p, from, GROW_STEPS * (1 + round / 2), round);
+        const uint32_t steps = pack->fraction < LOOSE ? LOOSE_STEPS : DENSE_STEPS;
+        memory = !shake(&p, from, steps << round, round);
         if (!memory && relax(&p, &memory)) outcome = PACK_DONE;
         if (!memory) *scale = fmax(*scale, (1 - p.overlap_max) * (1 + MARGIN));
     }

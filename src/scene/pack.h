@@ -11,6 +11,7 @@ struct pack {
     uint32_t count, fixed;      /* discs to place; discs behind them in the arrays that stay */
     double  *x, *y;             /* in: first guesses, inside the region; out: the packing */
     const double *radius;
+    double   fraction;          /* of the area, about: how long to shake */
     uint32_t side_count;        /* the region's sides: segments with the inside to their left */
     const struct wall *sides;
     uint32_t wall_count;        /* what else must not be overlapped */

@@ -19,7 +19,8 @@ enum { STREAM_RADIUS = 0x7261, STREAM_POSITION = 0x706f, STREAM_VELOCITY = 0x766
 void place_bounds(const struct scene *scene, const struct placement *placement, double bounds[4])
 {
     const struct key_reals *outline = &placement->outline;
-    memcpy(bounds, isnan(placement->region[0]) ? scene->box : placement->region, 4 * sizeof *bounds);
+    memcpy(bounds, isnan(placement->region[0]) ? scene->box : placement->region,
+           4 * sizeof *bounds);
     for (uint32_t k = 0; k + 1 < outline->count; k += 2) {
         const double x = outline->values[k], y = outline->values[k + 1];
         bounds[0] = k ? fmin(bounds[0], x) : x;
@@ -228,7 +229,8 @@ static struct lattice lattice_of(const struct region *region, const struct place
 
 /* A site is used if a grain of the largest radius fits there, so that small grains are not
  * favoured along slopes. */
-static bool site_is_free(const struct placer *placer, const struct region *region, double x, double y,
+static bool site_is_free(const struct placer *placer, const struct region *region, double x,
+                         double y,
                          double radius)
 {
     return region_holds(region, x, y, radius) && !meets_wall(placer, x, y, radius)
@@ -254,7 +256,8 @@ static bool place_lattice(struct placer *placer, const struct placement *placeme
             const uint64_t draw = 2 * (uint64_t)done;
             const double r = placement->jitter * gap / 2
                 * sqrt(rng_unit(word_of(placer, STREAM_POSITION, number, draw)));
-            const double phase = 2 * M_PI * rng_unit(word_of(placer, STREAM_POSITION, number, draw + 1));
+            const double phase = 2 * M_PI * rng_unit(word_of(placer, STREAM_POSITION, number,
+                                                             draw + 1));
             const double xs = x + r * cos(phase), ys = y + r * sin(phase);
             if (r > 0 && site_is_free(placer, &region, xs, ys, radius_max)) {
                 x = xs;
@@ -312,14 +315,15 @@ static uint32_t sides_of(const struct region *region, struct wall *sides)
     for (uint32_t k = 0; k < points; k++) {
         const uint32_t n = (k + 1) % points, from = twice > 0 ? k : n, to = twice > 0 ? n : k;
         if (!region->outline && (k % 2 ? region->free_x : region->free_y)) continue;
-        sides[count++] = (struct wall){.shape = WALL_SEGMENT, .x0 = p[2 * from], .y0 = p[2 * from + 1],
+        sides[count++] = (struct wall){.shape = WALL_SEGMENT, .x0 = p[2 * from],
+                                       .y0 = p[2 * from + 1],
                                        .x1 = p[2 * to], .y1 = p[2 * to + 1]};
     }
     return count;
 }
 
 /* What a random placement works on: the new discs, then those that are there already. */
-struct heap { uint32_t count, all; double *x, *y, *radius; };
+struct heap { uint32_t count, all; double *x, *y, *radius; double fraction; };
 
 static bool heap_take(const struct placer *placer, struct heap *heap)
 {
@@ -337,13 +341,25 @@ static bool heap_take(const struct placer *placer, struct heap *heap)
     return true;
 }
 
+struct guess { double x, y, band; };
+
+/* By bands of two diameters, from left to right: neighbours in space are near in memory. */
+static int guess_compare(const void *a, const void *b)
+{
+    const struct guess *p = a, *q = b;
+    if (p->band != q->band) return p->band < q->band ? -1 : 1;
+    return (p->x > q->x) - (p->x < q->x);
+}
+
 /* A random point of the region from which a disc is easily moved to where it fits: inside, and
  * outside of solid discs.  Bounded tries; the last point may lie in a disc. */
-static void first_guess(const struct placer *placer, const struct region *region, uint32_t number,
+static bool first_guess(const struct placer *placer, const struct region *region, uint32_t number,
                         struct heap *heap)
 {
     struct rng rng = rng_stream(placer->scene->seed, STREAM_POSITION, number);
     const double *b = region->bounds;
+    struct guess *guesses = calloc(heap->count, sizeof *guesses);
+    if (!guesses) return false;
     for (uint32_t k = 0; k < heap->count; k++) {
         double x = 0, y = 0;
         for (uint32_t tries = 0; tries < 2000; tries++) {
@@ -352,9 +368,15 @@ static void first_guess(const struct placer *placer, const struct region *region
             const bool inside = region_holds(region, x, y, 0);
             if (inside && (tries > 1000 || !meets_wall(placer, x, y, 0))) break;
         }
-        heap->x[k] = x;
-        heap->y[k] = y;
+        guesses[k] = (struct guess){x, y, floor((y - b[1]) / (4 * heap->radius[0]))};
     }
+    qsort(guesses, heap->count, sizeof *guesses, guess_compare);
+    for (uint32_t k = 0; k < heap->count; k++) {
+        heap->x[k] = guesses[k].x;
+        heap->y[k] = guesses[k].y;
+    }
+    free(guesses);
+    return true;
 }
 
 static enum pack_outcome heap_pack(const struct placer *placer, const struct region *region,
@@ -364,7 +386,8 @@ static enum pack_outcome heap_pack(const struct placer *placer, const struct reg
     struct wall *sides = calloc(corners, sizeof *sides);
     if (!sides) return PACK_MEMORY;
     struct pack pack = {.count = heap->count, .fixed = heap->all - heap->count, .x = heap->x,
-                        .y = heap->y, .radius = heap->radius, .sides = sides,
+                        .y = heap->y, .radius = heap->radius, .fraction = heap->fraction,
+                        .sides = sides,
                         .wall_count = placer->wall_count, .walls = placer->walls,
                         .wraps_x = placer->wraps_x, .wraps_y = placer->wraps_y,
                         .seed = word_of(placer, STREAM_POSITION, number, 1)};
@@ -375,7 +398,8 @@ static enum pack_outcome heap_pack(const struct placer *placer, const struct reg
     return outcome;
 }
 
-static void tell_jam(const struct placer *placer, const struct placement *placement, uint32_t number,
+static void tell_jam(const struct placer *placer, const struct placement *placement,
+                     uint32_t number,
                      double asked, double reached, uint32_t count)
 {
     char key[64];
@@ -415,15 +439,17 @@ static bool place_random(struct placer *placer, const struct placement *placemen
             heap.radius[k] = draw_radius(species, word_of(placer, STREAM_RADIUS, number, k));
             filled += M_PI * heap.radius[k] * heap.radius[k];
         }
+        heap.fraction = filled / area;
         outcome = PACK_JAMMED;
         scale = sqrt(0.84 * area / filled);             /* what fits at random, in large regions */
         if (filled < 0.91 * area) {
-            first_guess(placer, &region, number, &heap);
-            outcome = heap_pack(placer, &region, number, &heap, &scale);
+            outcome = first_guess(placer, &region, number, &heap)
+                    ? heap_pack(placer, &region, number, &heap, &scale) : PACK_MEMORY;
         }
     }
     if (outcome == PACK_JAMMED) {
-        tell_jam(placer, placement, number, filled / area, filled / area * scale * scale, heap.count);
+        tell_jam(placer, placement, number, filled / area, filled / area * scale * scale,
+                 heap.count);
     }
     bool done = outcome != PACK_MEMORY;
     for (uint32_t k = 0; k < heap.count && outcome == PACK_DONE && done; k++) {
@@ -496,10 +522,12 @@ static void tell_missing(const struct placer *placer, const struct placement *pl
     if (placed > 0 && placed >= placement->count) return;
     snprintf(key, sizeof key, "placements.[%u]%s", number, placement->count ? ".count" : "");
     if (placed == 0) {
-        findings_tell(placer->findings, placer->scene, FINDING_ERROR, key, "placements.[%u]: no grain "
+        findings_tell(placer->findings, placer->scene, FINDING_ERROR, key,
+                      "placements.[%u]: no grain "
                       "fits: the region is too small, or walls or other grains fill it", number);
     } else {
-        findings_tell(placer->findings, placer->scene, FINDING_ERROR, key, "placements.[%u]: only %u "
+        findings_tell(placer->findings, placer->scene, FINDING_ERROR, key,
+                      "placements.[%u]: only %u "
                       "of %u grains fit clear of walls and other grains; ask for at most %u or "
                       "enlarge the region", number, placed, placement->count, placed);
     }
@@ -535,10 +563,12 @@ bool place_grains(struct scene *scene, struct findings *findings)
                                                    : place_lattice(&placer, placement, k, species);
         if (!done) break;
         set_velocities(&placer, placement, k, from);
-        if (findings->errors == errors) tell_missing(&placer, placement, k, placer.grains.count - from);
+        if (findings->errors == errors) tell_missing(&placer, placement, k,
+                                                     placer.grains.count - from);
     }
     done = done && keep_grains(&placer);
-    if (!done) findings_tell(findings, scene, FINDING_ERROR, "placements", "not enough memory for the "
+    if (!done) findings_tell(findings, scene, FINDING_ERROR, "placements",
+                             "not enough memory for the "
                              "grains");
     struct placed *g = &placer.grains;
     double *const arrays[] = {g->x, g->y, g->vx, g->vy, g->spin, g->radius};

@@ -17,14 +17,18 @@ uint32_t resolve_species(const struct scene *scene, const char *name)
 double resolve_radius_max(const struct species *species)
 {
     double radius = species->radii.count ? 0 : species->radius[1];
-    for (uint32_t k = 0; k < species->radii.count; k++) radius = fmax(radius, species->radii.values[k]);
+    for (uint32_t k = 0; k < species->radii.count; k++) {
+        radius = fmax(radius, species->radii.values[k]);
+    }
     return radius;
 }
 
 double resolve_radius_min(const struct species *species)
 {
     double radius = species->radii.count ? INFINITY : species->radius[0];
-    for (uint32_t k = 0; k < species->radii.count; k++) radius = fmin(radius, species->radii.values[k]);
+    for (uint32_t k = 0; k < species->radii.count; k++) {
+        radius = fmin(radius, species->radii.values[k]);
+    }
     return radius;
 }
 
@@ -130,7 +134,8 @@ static struct wall blank(enum wall_shape shape)
                          .body = WALL_NONE};
 }
 
-static void add_border(struct builder *builder, int kind, double x0, double y0, double x1, double y1)
+static void add_border(struct builder *builder, int kind, double x0, double y0, double x1,
+                       double y1)
 {
     if (kind != BORDER_WALL) return;
     struct wall wall = blank(WALL_SEGMENT);
@@ -233,7 +238,8 @@ static void add_all(struct builder *builder)
     for (uint32_t k = 0; k < scene->wall_entry_count; k++) {
         add_entry(builder, &scene->wall_entries[k], WALL_NONE);
     }
-    for (uint32_t k = 0; k < scene->obstacle_count; k++) add_entry(builder, &scene->obstacles[k], k);
+    for (uint32_t k = 0; k < scene->obstacle_count; k++) add_entry(builder, &scene->obstacles[k],
+                                                                   k);
 }
 
 /* Ends within a billionth of the box's size are the same point. */

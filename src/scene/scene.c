@@ -27,6 +27,7 @@ enum { TEXT_SIZE_MAX = 64 << 20, PHASES_MAX = 1000 };
 struct source_text {
     const char *text;
     char *owned;                /* to be freed; NULL if borrowed */
+    char path[KEY_TEXT_MAX];    /* as the user named it; `file` says where it really is */
     char file[KEY_TEXT_MAX], folder[KEY_TEXT_MAX], name[KEY_TEXT_MAX];
 };
 
@@ -64,6 +65,7 @@ static void name_parts(struct source_text *source, const char *path)
     if (end && end != source->name) *end = 0;
     snprintf(source->folder, sizeof source->folder, "%.*s", slash ? (int)(slash - path) : 1,
              slash ? path : ".");
+    snprintf(source->path, sizeof source->path, "%s", path);
     snprintf(source->file, sizeof source->file, "%s", path);
 }
 
@@ -80,18 +82,20 @@ static bool read_text(struct source_text *source, const struct scene_request *re
     source->text = request->text;
     if (source->text) return true;
     if (names_builtin(path)) {
-        char name[KEY_TEXT_MAX + 16];
-        snprintf(name, sizeof name, "scenes/%s.cfg", path);
+        char name[KEY_TEXT_MAX];
+        snprintf(name, sizeof name, "scenes/%.200s.cfg", path);
         const struct asset *asset = asset_find(name);
         if (asset) {
             source->text = (const char *)asset->bytes;
+            memcpy(source->file, name, strlen(name) + 1);
             return true;
         }
         if (!file_exists(path)) {
             char close[64];
             const char *nearest = nearest_builtin(path, close);
             findings_tell_at(findings, FINDING_ERROR, path, 0, "there is no built-in scene of this "
-                "name%s%s%s; 'sandreel scenes' lists them, and a file is named with its ending .cfg",
+                "name%s%s%s; 'sandreel scenes' lists them, and a file is named with its ending "
+                ".cfg",
                 nearest ? "; did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "");
             return false;
         }
@@ -101,7 +105,8 @@ static bool read_text(struct source_text *source, const struct scene_request *re
     source->owned = file_load(path, TEXT_SIZE_MAX, &size, &error);
     source->text = source->owned;
     if (!source->owned) {
-        const char *why = strncmp(error.text, path, strlen(path)) == 0 ? error.text + strlen(path) + 2
+        const char *why = strncmp(error.text, path, strlen(path)) == 0
+            ? error.text + strlen(path) + 2
                                                                        : error.text;
         findings_tell_at(findings, FINDING_ERROR, path, 0, "%s", why);
         return false;
@@ -134,7 +139,8 @@ static void apply_request(struct scene *scene, const struct scene_request *reque
                           struct findings *findings)
 {
     for (uint32_t k = 0; k < request->override_count; k++) {
-        override_apply(scene->places->root, &scene->arena, request->overrides[k], "-s", 0, findings);
+        override_apply(scene->places->root, &scene->arena, request->overrides[k], "-s", 0,
+                       findings);
     }
 }
 
@@ -162,7 +168,8 @@ static bool build_tree(struct scene *scene, const struct scene_request *request,
     const struct tree *phases = tree_member(places->root, "phases");
     for (uint32_t k = 0; phases && k < phase; k++) {
         const struct tree *entry = phases->kind == TREE_LIST ? tree_entry(phases, k) : phases;
-        if (entry) apply_texts(scene, tree_member(entry, "set"), k + 1 == phase ? findings : &quiet);
+        if (entry) apply_texts(scene, tree_member(entry, "set"), k + 1 == phase ? findings
+                               : &quiet);
     }
     return true;
 }
@@ -175,7 +182,7 @@ static struct scene *scene_blank(const struct scene_request *request,
     struct scene *scene = calloc(1, sizeof *scene);
     if (!scene) return NULL;
     memcpy(scene->name, source->name, sizeof scene->name);
-    memcpy(scene->path, source->file, sizeof scene->path);
+    memcpy(scene->path, source->path, sizeof scene->path);
     scene->settings_count = request->group_count;
     const struct key_group **groups;
     if (arena_array(&scene->arena, &groups, request->group_count)
@@ -201,7 +208,7 @@ static struct scene *scene_build(const struct scene_request *request,
         scene_free(scene);
         return NULL;
     }
-    if (scene->quick) scene->quick_set.count = 0;       /* it is applied; the keys hold the values */
+    if (scene->quick) scene->quick_set.count = 0;       /* applied: the keys hold the values */
     if (!isfinite(scene->view.window[0])) {
         for (int k = 0; k < 4; k++) scene->view.window[k] = NAN;
     }
@@ -333,6 +340,7 @@ static const char *const unit_words[][3] = {
     {"1/area", "1/m^2", "1/cm^2"},      {"1/length", "1/m", "1/cm"},
     {"mass/area", "kg/m^2", "g/cm^2"},  {"pressure", "N/m", "dyn/cm"},
     {"stress", "N/m", "dyn/cm"},        {"speed^2", "m^2/s^2", "cm^2/s^2"},
+    {"1/time^2", "1/s^2", "1/s^2"},     {"angular momentum", "kg m^2/s", "g cm^2/s"},
     {"temperature", "m^2/s^2", "cm^2/s^2"}, {"mass/time", "kg/s", "g/s"},
 };
 

@@ -23,7 +23,8 @@ static bool on(const struct scene *scene, struct scene_reason *reason, const cha
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
     const struct tree *node = scene->places ? tree_nearest(scene->places->root, key) : NULL;
-    if (node && node->line > 0) snprintf(place, sizeof place, " (%.60s:%d)", node->file, node->line);
+    if (node && node->line > 0) snprintf(place, sizeof place, " (%.60s:%d)", node->file,
+                                         node->line);
     else if (node && node->file) snprintf(place, sizeof place, " (%.60s)", node->file);
     snprintf(reason->why, sizeof reason->why, "%s%s", what, place);
     reason->on = true;
@@ -100,7 +101,8 @@ static bool mixture(const struct scene *scene, struct scene_reason *reason)
 
 static bool periodic(const struct scene *scene, struct scene_reason *reason)
 {
-    if (scene->left == BORDER_PERIODIC) return on(scene, reason, "left", "left and right are periodic");
+    if (scene->left == BORDER_PERIODIC) return on(scene, reason, "left",
+                                                  "left and right are periodic");
     if (scene->bottom == BORDER_PERIODIC) {
         return on(scene, reason, "bottom", "bottom and top are periodic");
     }
@@ -112,9 +114,11 @@ static bool outflow(const struct scene *scene, struct scene_reason *reason)
     const int sides[4] = {scene->left, scene->right, scene->bottom, scene->top};
     const char *const names[4] = {"left", "right", "bottom", "top"};
     for (int k = 0; k < 4; k++) {
-        if (sides[k] == BORDER_OPEN) return on(scene, reason, names[k], "the border '%s' is open", names[k]);
+        if (sides[k] == BORDER_OPEN) return on(scene, reason, names[k], "the border '%s' is open",
+                                               names[k]);
     }
-    if (scene->sink_count) return on(scene, reason, "sinks", "there are %u sinks", scene->sink_count);
+    if (scene->sink_count) return on(scene, reason, "sinks", "there are %u sinks",
+                                     scene->sink_count);
     return off(reason, "no border is open and there is no sink");
 }
 
@@ -142,7 +146,8 @@ static bool gates(const struct scene *scene, struct scene_reason *reason)
 
 static bool collision_rate(const struct scene *scene, struct scene_reason *reason)
 {
-    if (scene->measure.collisions) return on(scene, reason, "measure.collisions", "measure.collisions is true");
+    if (scene->measure.collisions) return on(scene, reason, "measure.collisions",
+                                             "measure.collisions is true");
     if (scene->view.color == COLOR_COLLISIONS) {
         return on(scene, reason, "view.color", "view.color = \"collisions\"");
     }
@@ -164,10 +169,10 @@ static bool derive(const struct scene *scene, uint32_t bit, struct scene_reason 
     const double *g = scene->gravity;
     switch (bit) {
     case EFFECT_BIT_GRAVITY:
-        return g[0] != 0 || g[1] != 0 ? on(scene, reason, "gravity", "gravity = (%g, %g)", g[0], g[1])
+        return g[0] != 0 || g[1] != 0 ? on(scene, reason, "gravity", "gravity = (%g, %g)", g[0],
+                                           g[1])
                                       : off(reason, "gravity is zero");
     case EFFECT_BIT_DISSIPATION:  return dissipation(scene, reason);
-    case EFFECT_BIT_ROTATION:
     case EFFECT_BIT_FRICTION:     return friction(scene, reason);
     case EFFECT_BIT_POLYDISPERSE: return polydisperse(scene, reason);
     case EFFECT_BIT_MIXTURE:      return mixture(scene, reason);
@@ -184,7 +189,12 @@ static bool derive(const struct scene *scene, uint32_t bit, struct scene_reason 
     case EFFECT_BIT_SCREEN:       return counted(scene, reason, "screens", scene->screen_count);
     case EFFECT_BIT_COLLISION_RATE: return collision_rate(scene, reason);
     case EFFECT_BIT_SHEAR:        return off(reason, "no border is sheared");
-    default:                      return off(reason, "the model's tangential law does not ask for it");
+    /* How friction is carried is a model's own: discs spin, springs remember, lattices do
+     * neither. */
+    case EFFECT_BIT_ROTATION:
+        return off(reason, "no torque turns a grain");
+    default:
+        return off(reason, "the model's tangential law does not ask for it");
     }
 }
 
@@ -206,7 +216,8 @@ bool scene_explain(const struct scene *scene, uint32_t index, struct scene_reaso
     const bool derived = derive(scene, index, reason);
     reason->on = (scene->effects & reason->effect) != 0;
     if (reason->on && !derived) {
-        snprintf(reason->why, sizeof reason->why, "settings of the model '%.60s' ask for it", scene->model);
+        snprintf(reason->why, sizeof reason->why, "settings of the model '%.60s' ask for it",
+                 scene->model);
     } else if (!reason->on && derived) {
         snprintf(reason->why, sizeof reason->why, "the model '%.60s' leaves it out", scene->model);
     }

@@ -35,7 +35,8 @@
 
 static const struct key top_keys[] = {
     TEXT(scene, title, "", NULL, "what the scene is, for people"),
-    CHOICE(scene, units, "reduced", "reduced|si|cgs", "labels of pictures and tables; reduced: none"),
+    CHOICE(scene, units, "reduced", "reduced|si|cgs",
+           "labels of pictures and tables; reduced: none"),
     TEXT(scene, model, "md", NULL, "the model that computes it unless --model names another"),
     ROW(scene, seed, KEY_WORD64, "1", NAN, NAN, "1", NULL, "the same seed gives the same run"),
     REAL(scene, until, NULL, KEY_POSITIVE, FAR, "time", "when the run ends"),
@@ -62,10 +63,12 @@ static const struct key species_keys[] = {
     REAL(species, density, "1", KEY_POSITIVE, FAR, "mass/area", "m = density pi R^2"),
     REAL(species, restitution, "nan", 0, 1, "1",
          "of a head-on collision; absent: from stiffness and damping"),
-    REAL(species, stiffness, "nan", KEY_POSITIVE, FAR, "", "normal; its meaning is the force law's; "
+    REAL(species, stiffness, "nan", KEY_POSITIVE, FAR, "",
+         "normal; its meaning is the force law's; "
          "absent: the model chooses"),
     REAL(species, damping, "nan", 0, FAR, "", "normal; instead of restitution"),
-    REAL(species, friction, "0", 0, 100, "1", "Coulomb coefficient; 0: no friction and no rotation"),
+    REAL(species, friction, "0", 0, 100, "1",
+         "Coulomb coefficient; 0: no friction and no rotation"),
     CHOICE(species, inertia, "disc", "disc|sphere", "I = m R^2 / 2 or 2 m R^2 / 5"),
 };
 
@@ -168,8 +171,10 @@ static const struct key view_keys[] = {
     BOOL(view, gravity_arrow, "false", "an arrow along gravity"),
     TEXT(view, label, "t = {t} {time_unit}", NULL, "a line of text; {t}, {n}, ... are filled in"),
     TEXT(view, title, "", NULL, "a headline"),
-    REAL(view, arrow_scale, "nan", KEY_POSITIVE, FAR, "", "length of an arrow per speed; absent: chosen"),
-    REAL(view, force_scale, "nan", KEY_POSITIVE, FAR, "", "width of a line per force; absent: chosen"),
+    REAL(view, arrow_scale, "nan", KEY_POSITIVE, FAR, "",
+         "length of an arrow per speed; absent: chosen"),
+    REAL(view, force_scale, "nan", KEY_POSITIVE, FAR, "",
+         "width of a line per force; absent: chosen"),
     REAL(view, text_size, "nan", 4, 512, "pixels", "height of text; absent: from the frame's"),
 };
 
@@ -208,7 +213,8 @@ static const struct key_group
     wall_group = GROUP(wall_entry, "walls", wall_keys, "solid geometry"),
     obstacle_group = GROUP(wall_entry, "obstacles", wall_keys,
                            "solid geometry on which the force is summed up"),
-    screen_group = GROUP(screen, "screens", screen_keys, "grains that cross are recorded, and leave"),
+    screen_group = GROUP(screen, "screens", screen_keys,
+                         "grains that cross are recorded, and leave"),
     sink_group = GROUP(sink, "sinks", sink_keys, "where grains vanish"),
     phase_group = GROUP(phase_entry, "phases", phase_keys, "keys that change at a time"),
     view_group = GROUP(view, "view", view_keys, "how frames look"),

@@ -99,7 +99,8 @@ static void write_value(FILE *out, const struct key *key, const void *at)
         else fprintf(out, "0x%llxL", (unsigned long long)word64);
         break;
     case KEY_BOOL:   fputs(*(const bool *)at ? "true" : "false", out); break;
-    case KEY_CHOICE: write_text(out, key_choice_word(key->choices, *(const int *)at, word, sizeof word));
+    case KEY_CHOICE: write_text(out, key_choice_word(key->choices, *(const int *)at, word,
+                                                     sizeof word));
                      break;
     case KEY_TEXT:   write_text(out, at); break;
     case KEY_REALS:  write_numbers(out, ((const struct key_reals *)at)->values,
@@ -110,7 +111,8 @@ static void write_value(FILE *out, const struct key *key, const void *at)
     }
 }
 
-static void write_keys(FILE *out, const struct key_group *group, const void *target, const char *indent)
+static void write_keys(FILE *out, const struct key_group *group, const void *target,
+                       const char *indent)
 {
     for (uint32_t k = 0; k < group->count; k++) {
         const struct key *key = &group->keys[k];
@@ -133,6 +135,81 @@ static void write_group(FILE *out, const struct key_group *group, const void *ta
     fputs("};\n", out);
 }
 
+/* ---- phases: what a model chose for one of them is written with it ------------------------- */
+
+/* The value as text; NULL if it cannot be written.  The caller frees. */
+static char *value_text(const struct key *key, const void *at)
+{
+    char *text = NULL;
+    size_t size;
+    if (reason_to_omit(key, at)) return NULL;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return NULL;
+    write_value(out, key, at);
+    fclose(out);
+    return text;
+}
+
+static bool sets_key(const struct key_texts *set, const char *path)
+{
+    const size_t length = strlen(path);
+    for (uint32_t k = 0; k < set->count; k++) {
+        const char *text = set->texts[k];
+        if (strncmp(text, path, length) == 0 && (text[length] == '=' || text[length] == ' ')) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Keys of a group that differ from the phase before and that the phase itself does not set: a
+ * model completed them (a time step, a stiffness). */
+static void write_changes(FILE *out, const struct key_group *group, const char *prefix,
+                          const void *before, const void *now, const struct key_texts *set,
+                          bool *first)
+{
+    for (uint32_t k = 0; k < group->count; k++) {
+        const struct key *key = &group->keys[k];
+        char path[200], line[KEY_TEXT_MAX];
+        snprintf(path, sizeof path, "%s.%s", prefix, key->name);
+        char *old = value_text(key, (const char *)before + key->offset);
+        char *value = value_text(key, (const char *)now + key->offset);
+        if (value && (!old || strcmp(old, value) != 0) && !sets_key(set, path)) {
+            snprintf(line, sizeof line, "%s=%s", path, value);
+            if (!*first) fputs(", ", out);
+            write_text(out, line);
+            *first = false;
+        }
+        free(old);
+        free(value);
+    }
+}
+
+static void write_phase(FILE *out, const struct scene *scene, uint32_t index)
+{
+    const struct phase_entry *entry = &scene->phase_entries[index];
+    const struct scene *before = scene->phases[index], *now = scene->phases[index + 1];
+    fputs("        time = ", out);
+    write_number(out, entry->time);
+    fputs(";\n        set = (", out);
+    for (uint32_t k = 0; k < entry->set.count; k++) {
+        if (k) fputs(", ", out);
+        write_text(out, entry->set.texts[k]);
+    }
+    bool first = entry->set.count == 0;
+    for (uint32_t k = 0; k < before->species_count && k < now->species_count; k++) {
+        char prefix[40];
+        snprintf(prefix, sizeof prefix, "grains.[%u]", k);
+        write_changes(out, scene_key_sections[0].group, prefix, &before->species[k],
+                      &now->species[k], &entry->set, &first);
+    }
+    for (uint32_t g = 0; g < scene->settings_count; g++) {
+        write_changes(out, scene->settings_groups[g], scene->settings_groups[g]->name,
+                      before->settings[g], now->settings[g], &entry->set, &first);
+    }
+    fputs(");\n", out);
+}
+
 static void write_list(FILE *out, const struct scene_section *section, const struct scene *scene)
 {
     const char *base = (const char *)scene, *entries;
@@ -143,7 +220,9 @@ static void write_list(FILE *out, const struct scene_section *section, const str
     fprintf(out, "\n%s = (\n", section->group->name);
     for (uint32_t k = 0; k < count; k++) {
         fputs("    {\n", out);
-        write_keys(out, section->group, entries + k * section->group->size, "        ");
+        const bool phase = section->offset == offsetof(struct scene, phase_entries);
+        if (phase && k + 1 < scene->phase_count) write_phase(out, scene, k);
+        else write_keys(out, section->group, entries + k * section->group->size, "        ");
         fprintf(out, "    }%s\n", k + 1 < count ? "," : "");
     }
     fputs(");\n", out);

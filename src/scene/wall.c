@@ -58,7 +58,8 @@ static struct wall_nearest segment_nearest(const struct wall *wall, double x, do
     if (along >= 1) return towards(wall->x1, wall->y1, x, y, ux, uy, 2);
     /* The distance from the normal's projection keeps all digits close to the wall. */
     const double off = (x - wall->x0) * ux + (y - wall->y0) * uy;
-    return off < 0 ? (struct wall_nearest){-ux, -uy, -off, 0} : (struct wall_nearest){ux, uy, off, 0};
+    return off < 0 ? (struct wall_nearest){-ux, -uy, -off, 0} : (struct wall_nearest){ux, uy, off,
+                                                                                      0};
 }
 
 static struct wall_nearest arc_nearest(const struct wall *wall, double x, double y)

@@ -135,7 +135,9 @@ static void take_measures(struct ed *ed)
     }
     const double fastest = fmax(sqrt(max2), walls);
     const double typical = fmax(fmax(sqrt(sum2 / fmax(ed->count, 1)), sqrt(g * d)), walls);
-    clock->noise = fmax(noise_share * fastest, noise_at_rest * sqrt(g * d));
+    /* Without the TC rule a lossy gas may collapse, and that shall be seen, not rounded away. */
+    const bool collapses = ed->law.t_c == 0 && ed->effects & EFFECT_DISSIPATION;
+    clock->noise = collapses ? 0 : fmax(noise_share * fastest, noise_at_rest * sqrt(g * d));
     clock->stuck_step = typical > 0 ? stuck_share * d / typical : 0;
     /* v t + g t^2 / 2 = way, in the form that does not cancel. */
     const double way = way_max * d, speed = fmax(fastest, typical);

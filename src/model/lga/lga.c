@@ -28,8 +28,8 @@ static const struct key keys[] = {
     {"spacing", KEY_REAL, ROW(spacing), "nan", KEY_POSITIVE, NAN, "length", NULL,
      "distance of nodes; when absent sqrt(7) mean diameters, so that seven grains fill a node"},
     {"tick", KEY_REAL, ROW(tick), "nan", KEY_POSITIVE, NAN, "time", NULL,
-     "duration of a tick, in which a mover goes one spacing; when absent sqrt(spacing / gravity), "
-     "without gravity spacing / speed of the grains at the start"},
+     "duration of a tick, in which a mover goes one spacing; when absent a fall through the box takes "
+     "as long as free fall, and without gravity movers are as fast as the grains at the start"},
     {"k", KEY_REAL, ROW(k), "nan", 0, 1, "1", NULL,
      "share of collisions that lose energy; when absent 1 - restitution^2"},
     {"g", KEY_REAL, ROW(g), "0.5", 0, 1, "1", NULL,
@@ -90,7 +90,9 @@ static struct lga_settings completed(const struct scene *scene)
             const double *g = scene->phases[p]->gravity;
             gravity = fmax(gravity, hypot(g[0], g[1]));
         }
-        s.tick = gravity > 0 ? sqrt(s.spacing / gravity) : s.spacing / speed_at_start(scene);
+        const double height = scene->box[3] - scene->box[1];
+        const double fall = sqrt(0.5 * gravity * height);       /* mean speed from top to bottom */
+        s.tick = s.spacing / (gravity > 0 ? fall : speed_at_start(scene));
     }
     if (!isfinite(s.k)) s.k = inelastic_share(scene);
     if (!isfinite(s.pw)) s.pw = s.k;
@@ -374,8 +376,10 @@ const struct model model_lga = {
     .name     = "lga",
     .summary  = "Grains that hop on a triangular lattice, seven to a node: the fastest flow of sand.",
     .work     = "ticks",
-    .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_POLYDISPERSE | EFFECT_PERIODIC
-              | EFFECT_WALLS | EFFECT_GATES | EFFECT_INFLOW | EFFECT_OUTFLOW,
+    /* Friction is the lattice's own: its slopes stand without a coefficient, and `s` says how firmly
+     * a grain with one-sided support holds. */
+    .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_FRICTION | EFFECT_POLYDISPERSE
+              | EFFECT_PERIODIC | EFFECT_WALLS | EFFECT_GATES | EFFECT_INFLOW | EFFECT_OUTFLOW,
     .settings = &group,
     .resolve  = lga_resolve,
     .memory   = lga_memory,

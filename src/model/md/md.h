@@ -35,7 +35,8 @@ struct grain {
     double   radius;
     double   inverse_mass;
     uint32_t id;
-    uint16_t species, unused;
+    uint16_t species;
+    uint16_t fresh;             /* has taken no step yet: its first kick is half a one */
 };
 
 struct half {                   /* what only the integrator touches */

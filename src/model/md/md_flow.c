@@ -67,16 +67,14 @@ bool md_flow_add(struct md *md, const struct source_grain *grain, double spin)
 {
     if (md->count == md->count_max) return false;
     const double mass = scene_mass(&md->scene->species[grain->species], grain->radius);
-    const double half = md->gears ? 0 : 0.5 * md->dt, *gravity = md->scene->gravity;
+    const double *gravity = md->scene->gravity;
     const double rim = md->law.tangential ? spin * grain->radius : 0;
     md->grains[md->count] = (struct grain){
         .x = grain->x, .y = grain->y, .ux = grain->vx, .uy = grain->vy, .rim = rim,
         .radius = grain->radius, .inverse_mass = 1 / mass, .id = md->id_next++,
-        .species = grain->species,
+        .species = grain->species, .fresh = !md->gears,
     };
-    md->halves[md->count] = (struct half){
-        .hx = grain->vx - half * gravity[0], .hy = grain->vy - half * gravity[1], .hrim = rim,
-    };
+    md->halves[md->count] = (struct half){.hx = grain->vx, .hy = grain->vy, .hrim = rim};
     if (md->gears) {
         md->gears[md->count] = (struct gear){.x2 = 0.5 * md->dt * md->dt * gravity[0],
                                              .y2 = 0.5 * md->dt * md->dt * gravity[1]};

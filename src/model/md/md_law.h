@@ -11,6 +11,10 @@
  *   coulomb      -min(g |v_t|, mu F) sign(v_t)
  *   spring       -(k_t s + g v_t), at most mu F; the spring s is kept at the limit
  *   haff-werner  -min(gamma m |v_t|, mu F) sign(v_t)
+ *
+ * The point of contact divides the line of centres as the radii do, so the lever of a tangential
+ * force is R d / (R_i + R_j), d the distance: with R itself (004 eq. 10) a pair would not keep
+ * its angular momentum while it overlaps.  Slip speeds use the same lever.
  */
 #ifndef MD_LAW_H
 #define MD_LAW_H

@@ -65,7 +65,7 @@ static bool touch_pair(const struct md *md, uint32_t k, struct pair_touch *touch
     const struct md_pair_law *law = md_pair_law(md, a->species, b->species);
     const struct md_touch contact = {
         .overlap = reach - distance, .closing = -(ux * nx + uy * ny),
-        .slip = uy * nx - ux * ny - a->rim - b->rim,
+        .slip = uy * nx - ux * ny - distance / reach * (a->rim + b->rim),
         .mass = 1 / (a->inverse_mass + b->inverse_mass),
         .radius = a->radius * b->radius / reach, .spring = md->springs ? md->springs[k] : 0,
     };

@@ -119,7 +119,8 @@ FORCE_INLINE uint64_t forces(const struct md *md, struct md_window *restrict w, 
         suspects += overlap > suspect;
         double fx = normal * nx, fy = normal * ny;
         if (kernel & TANGENTIAL) {
-            const double slip = w->uy[k] * nx - w->ux[k] * ny - w->rims[k];
+            const double lever = distance / w->reach[k];
+            const double slip = w->uy[k] * nx - w->ux[k] * ny - lever * w->rims[k];
             const double drag = law.drag + law.drag_mass * mass + law.drag_share * damping;
             const double limit = law.friction * (normal > 0 ? normal : 0);
             double pull = -drag * slip, tangential;
@@ -134,7 +135,7 @@ FORCE_INLINE uint64_t forces(const struct md *md, struct md_window *restrict w, 
             }
             fx -= tangential * ny;
             fy += tangential * nx;
-            w->ft[k] = -tangential;
+            w->ft[k] = -lever * tangential;
         }
         w->fx[k] = fx;
         w->fy[k] = fy;

@@ -33,15 +33,16 @@ FORCE_INLINE int64_t bits_of(double x)
 FORCE_INLINE void move_verlet(struct grain *g, struct half *h, double ax, double ay, double at,
                               double dt, unsigned form)
 {
-    const double half = 0.5 * dt;
-    h->hx += dt * ax;
-    h->hy += dt * ay;
+    const double half = 0.5 * dt, kick = g->fresh ? half : dt;
+    g->fresh = 0;
+    h->hx += kick * ax;
+    h->hy += kick * ay;
     g->ux = h->hx + half * ax;
     g->uy = h->hy + half * ay;
     g->x += dt * h->hx;
     g->y += dt * h->hy;
     if (form & ROTATES) {
-        h->hrim += dt * at;
+        h->hrim += kick * at;
         g->rim = h->hrim + half * at;
         h->angle += dt * h->hrim;
     }
@@ -239,6 +240,7 @@ static void add_sums(struct md *md)
 bool md_step_take(struct md *md)
 {
     if (md->gears) md->steps_here++;                            /* Gear: forces at the new time */
+    if (md->walls_vary) md_walls_place(md);
     const uint32_t strips = md->strip_count;
 #pragma omp parallel num_threads(md->thread_count) if (strips > 1)
     {
@@ -248,8 +250,6 @@ bool md_step_take(struct md *md)
 #pragma omp for schedule(static)
             for (uint32_t t = 0; t < strips; t++) predict_gear(md, t);
         }
-#pragma omp single
-        if (md->walls_vary) md_walls_place(md);
 #pragma omp for schedule(static)
         for (uint32_t t = 0; t < strips; t++) push_cross(md, t, &w);
 #pragma omp for schedule(static)

@@ -204,7 +204,7 @@ static void wall_force(const struct md *md, const struct wall_link *link, const 
                         ? g->radius * wall->radius / (g->radius + wall->radius) : g->radius;
     const struct md_touch contact = {
         .overlap = touch->overlap, .closing = -(ux * nx + uy * ny),
-        .slip = -ux * ny + uy * nx - g->rim, .mass = 1 / g->inverse_mass, .radius = radius,
+        .slip = -ux * ny + uy * nx - touch->lever * g->rim, .mass = 1 / g->inverse_mass, .radius = radius,
         .spring = spring, .dt = dt,
     };
     const struct md_force_out force = md_law_force(&md->law, pair, &contact);
@@ -229,6 +229,7 @@ void md_walls_touch(const struct md *md, uint32_t first, uint32_t last, double d
         out[k].nearest = wall_nearest(&md->walls_now[w], g->x - md->image_x[image],
                                       g->y - md->image_y[image]);
         out[k].overlap = g->radius - out[k].nearest.distance;
+        out[k].lever = out[k].nearest.distance / g->radius;
     }
     for (uint32_t k = 0; k < count; k++) {
         out[k].counts = out[k].overlap > 0
@@ -276,7 +277,7 @@ void md_walls_push(struct md *md, uint32_t t, struct push *pushes)
                 struct push *push = &pushes[i - strip->first];
                 push->fx += touches[o].fx;
                 push->fy += touches[o].fy;
-                push->ft -= touches[o].tangential;
+                push->ft -= touches[o].lever * touches[o].tangential;
                 md->sums[t].tangential += md->law.tangential;
                 if (touches[o].overlap > md->suspect_overlap) md->sums[t].suspect++;
                 add_to_body(md, t, g, link, &touches[o]);

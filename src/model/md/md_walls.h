@@ -21,7 +21,7 @@ void md_walls_push(struct md *md, uint32_t t, struct push *pushes);
 /* One touch of a grain with a wall, for looking. */
 struct md_wall_touch {
     struct wall_nearest nearest;
-    double overlap, fx, fy, normal, tangential, spring, energy;
+    double overlap, lever, fx, fy, normal, tangential, spring, energy;
     bool   counts;              /* touches, and is not a joint already counted */
 };
 /* All touches of the links first..last-1, which belong to one grain; dt 0 leaves the springs. */

@@ -1,7 +1,0 @@
-#include "scene/scene.h"
-const char *scene_unit(const struct scene *scene, const char *dimension)
-{
-    (void)scene;
-    (void)dimension;
-    return "";
-}
