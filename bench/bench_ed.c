@@ -1,4 +1,7 @@
-/* bench_ed.c - see bench_ed.h. */
+/* bench_ed.c - see bench_ed.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "bench_ed.h"
 
 #include "base/clock.h"

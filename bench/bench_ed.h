@@ -1,5 +1,8 @@
 /* bench_ed.h - what a collision of hard discs costs: a square lattice in a periodic box, made a
- * gas by elastic collisions, then timed (processor seconds). */
+ * gas by elastic collisions, then timed (processor seconds).
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef BENCH_ED_H
 #define BENCH_ED_H
 

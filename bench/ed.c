@@ -1,4 +1,7 @@
-/* ed.c - prints what collisions of hard discs cost (bench_ed.h): ./ed [REPEATS [SETTING]] */
+/* ed.c - prints what collisions of hard discs cost (bench_ed.h): ./ed [REPEATS [SETTING]]
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "bench_ed.h"
 
 #include <math.h>

@@ -1,5 +1,8 @@
 /* ed_gas.h - a gas of hard discs that has forgotten its lattice, and how it cools; shared by the
- * quick test and the slow one, which has the paper's size. */
+ * quick test and the slow one, which has the paper's size.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef ED_GAS_H
 #define ED_GAS_H
 

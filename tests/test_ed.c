@@ -1,4 +1,7 @@
-/* test_ed.c - hard discs: what one or a few of them must do, and what many of them must keep. */
+/* test_ed.c - hard discs: what one or a few of them must do, and what many of them must keep.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "check.h"
 #include "scenes.h"
 

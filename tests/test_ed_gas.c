@@ -1,5 +1,8 @@
 /* test_ed_gas.c - many hard discs: collision rate and cooling against kinetic theory and MODELS
- * section 2, at a size that takes a second. */
+ * section 2, at a size that takes a second.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "ed_gas.h"
 
 static void test_elastic_collisions_come_at_enskogs_rate(void **unused)

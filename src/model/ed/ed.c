@@ -1,4 +1,7 @@
-/* ed.c - the event-driven model as a struct model: made, run, looked at and saved here. */
+/* ed.c - the event-driven model as a struct model: made, run, looked at and saved here.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "model/ed/ed.h"
 
 #include "model/ed/ed_change.h"
@@ -72,7 +75,7 @@ static bool make_cells(struct ed *ed)
     }
     if (!ed_cells_create(&ed->cells, &grid, ed->count_max, &ed->arena)) return false;
     const double spare = fmax(ed->cells.width_x, ed->cells.width_y) - grid.reach;
-    return ed_walls_create(&ed->walls, scene, &ed->cells,
+    return ed_walls_list_create(&ed->walls, scene, &ed->cells,
                            1.001 * scene->radius_max + 0.5 * grid.margin * fmax(spare, 0),
                            &ed->arena);
 }
@@ -323,7 +326,7 @@ static void ed_archive(void *state, struct archive *archive)
         start_anew(ed);
         return;
     }
-    ed_walls_refresh(ed);
+    ed_walls_list_refresh(ed);
     ed_queue_rebuild(&ed->queue, ed->events, ed->count, ed->clock.now, first_width(ed));
 }
 

@@ -13,6 +13,8 @@
  *     events in order (ed_queue.h); both only speed things up.  Events at the same time go by the
  *     grain's index, so the future is a function of the archived arrays and nothing else.
  *   - ed_kernel.h is the loop over events, compiled for each set of effects, and for AVX2 too.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef ED_H
 #define ED_H

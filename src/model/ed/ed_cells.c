@@ -1,4 +1,7 @@
-/* ed_cells.c - see ed_cells.h: laying out the grid, and the rare overfull cells. */
+/* ed_cells.c - see ed_cells.h: laying out the grid, and the rare overfull cells.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "model/ed/ed_cells.h"
 
 #include <assert.h>

@@ -4,6 +4,8 @@
  * can touch.  The spare width is a margin by which a grain may stick out before it changes its
  * cell, so that it does not flicker between two.  A ring of empty cells surrounds the grid; with
  * periodic borders the kernel wraps instead.  A ninth grain goes into a block chained behind.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef ED_CELLS_H
 #define ED_CELLS_H

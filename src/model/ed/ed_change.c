@@ -1,4 +1,7 @@
-/* ed_change.c - see ed_change.h. */
+/* ed_change.c - see ed_change.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "model/ed/ed_change.h"
 
 #include "model/ed/ed.h"

@@ -1,5 +1,8 @@
 /* ed_change.h - the rarer events: contacts with walls, grains that leave or enter, walls that
- * start, stop, open or close, and the end of a window of the collision rate. */
+ * start, stop, open or close, and the end of a window of the collision rate.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef ED_CHANGE_H
 #define ED_CHANGE_H
 

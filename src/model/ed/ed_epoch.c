@@ -4,6 +4,8 @@
  * events a grain, and whenever the fastest grain has flown some way, the epoch moves up.  That is
  * counted in events and in the model's own time, never in calls, so it does not depend on how a
  * run is cut into pieces.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/ed/ed_epoch.h"
 
@@ -162,7 +164,7 @@ void ed_epoch_begin(struct ed *ed)
     const double span = clock->now, events = (double)clock->epoch_events;
     ed_epoch_shift(ed);
     sort_in_space(ed);
-    ed_walls_refresh(ed);
+    ed_walls_list_refresh(ed);
     take_measures(ed);
     clock->epochs++;
     clock->epoch_events = 0;

@@ -1,4 +1,7 @@
-/* ed_epoch.h - moving the epoch up to the present, and grains to where their neighbours are. */
+/* ed_epoch.h - moving the epoch up to the present, and grains to where their neighbours are.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef ED_EPOCH_H
 #define ED_EPOCH_H
 

@@ -3,6 +3,8 @@
  * A template: ed_kernel_portable.c and ed_kernel_avx2.c include it, each under its own name, and
  * each compiles it once for every set of the constants below.  Both give the same bytes: no
  * multiply-add is fused, and among equal times the first candidate wins.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/ed/ed.h"
 #include "model/ed/ed_change.h"

@@ -1,4 +1,7 @@
-/* ed_law.c - see ed_law.h: the parameters of every pair of species. */
+/* ed_law.c - see ed_law.h: the parameters of every pair of species.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "model/ed/ed_law.h"
 
 #include "model/ed/ed.h"

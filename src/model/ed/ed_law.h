@@ -5,6 +5,8 @@
  * rebound with -beta0 of their slip, but at most mu times the normal impulse: beta = min(beta0,
  * beta1).  With inertia q m R^2 the factor of eq. (6) is q / (1 + q), so 2/7 for spheres and 1/3
  * for discs.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef ED_LAW_H
 #define ED_LAW_H

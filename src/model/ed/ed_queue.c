@@ -1,4 +1,7 @@
-/* ed_queue.c - see ed_queue.h: the rarer ways of the calendar. */
+/* ed_queue.c - see ed_queue.h: the rarer ways of the calendar.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "model/ed/ed_queue.h"
 
 #include "model/ed/ed.h"

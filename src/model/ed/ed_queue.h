@@ -8,6 +8,8 @@
  * calendar is made anew from the grains' events, so nothing here is archived.
  *
  * The order of events is by time, then by grain, whatever way they came in.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef ED_QUEUE_H
 #define ED_QUEUE_H

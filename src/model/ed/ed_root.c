@@ -1,4 +1,7 @@
-/* ed_root.c - see ed_root.h. */
+/* ed_root.c - see ed_root.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "model/ed/ed_root.h"
 
 #include <math.h>

@@ -4,6 +4,8 @@
  * roots lose half of the digits near a grazing contact, so the roots are isolated instead: between
  * two zeros of the derivative (found in the same way, one degree lower) a polynomial runs one way
  * and can be bisected safely.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef ED_ROOT_H
 #define ED_ROOT_H

@@ -4,6 +4,8 @@
  * distance and relative velocity decides whether they approach at all; prediction and collision
  * compute it by the same operations, so they never disagree (a fused multiply-add in one of them
  * would make a pair in collapse be predicted and refused for ever).
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/ed/ed.h"
 

@@ -1,4 +1,7 @@
-/* ed_settings.c - see ed_settings.h. */
+/* ed_settings.c - see ed_settings.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "model/ed/ed_settings.h"
 
 #include <math.h>

@@ -1,4 +1,7 @@
-/* ed_settings.h - the keys of `ed` in a scene file. */
+/* ed_settings.h - the keys of `ed` in a scene file.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef ED_SETTINGS_H
 #define ED_SETTINGS_H
 

@@ -1,4 +1,7 @@
-/* ed_walls.c - see ed_walls.h. */
+/* ed_walls.c - see ed_walls.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "model/ed/ed_walls.h"
 
 #include "model/ed/ed.h"

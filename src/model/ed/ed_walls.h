@@ -5,6 +5,8 @@
  * open and close only at the times of a list, and at each of them everything is predicted anew.
  *
  * The partner of such a contact is a word: ED_SOLID, a part, and an index.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef ED_WALLS_H
 #define ED_WALLS_H
@@ -58,11 +60,11 @@ struct ed_touch {
     double x, y;                /* the point of contact */
 };
 
-bool ed_walls_create(struct ed_walls *walls, const struct scene *scene,
+bool ed_walls_list_create(struct ed_walls *walls, const struct scene *scene,
                      const struct ed_cells *cells, double margin, struct arena *arena);
 
 /* Brings shifts and presence up to the epoch and the next change. */
-void ed_walls_refresh(struct ed *ed);
+void ed_walls_list_refresh(struct ed *ed);
 
 /* The soonest meeting of grain i within (now, now + s_max], as a time since the present; INFINITY
  * if there is none.  `partner` tells with what. */

@@ -1,4 +1,7 @@
-/* ed_walls_list.c - which walls each cell must look at, and what walls are doing when. */
+/* ed_walls_list.c - which walls each cell must look at, and what walls are doing when.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "model/ed/ed.h"
 
 #include <math.h>
@@ -75,7 +78,7 @@ static bool answers_for_end(const struct ed_walls *walls, uint32_t w, int end)
         || walls->walls[other].border;
 }
 
-bool ed_walls_create(struct ed_walls *walls, const struct scene *scene,
+bool ed_walls_list_create(struct ed_walls *walls, const struct scene *scene,
                      const struct ed_cells *cells, double margin, struct arena *arena)
 {
     *walls = (struct ed_walls){.count = scene->wall_count, .walls = scene->walls,
@@ -95,7 +98,7 @@ bool ed_walls_create(struct ed_walls *walls, const struct scene *scene,
     return true;
 }
 
-void ed_walls_refresh(struct ed *ed)
+void ed_walls_list_refresh(struct ed *ed)
 {
     struct ed_walls *walls = &ed->walls;
     /* Any time strictly between the changes tells what holds until the next. */
