@@ -65,13 +65,13 @@ FORCE_INLINE double crossing(const struct ed *ed, uint32_t i, int with)
         const double y = g->y + t * (g->vy + 0.5 * ed->gy * t), vy = g->vy + ed->gy * t;
         const double tx = leaves(x, vx, ed->gx, c->west[e->cx], c->east[e->cx]),
                      ty = leaves(y, vy, ed->gy, c->south[e->cy], c->north[e->cy]);
-        return fmax(fmin(tx, ty), 0);
+        return scan_most(scan_least(tx, ty), 0);
     }
     const double face_x = g->vx > 0 ? c->east[e->cx] : c->west[e->cx],
                  face_y = g->vy > 0 ? c->north[e->cy] : c->south[e->cy];
     const double tx = g->vx != 0 ? (face_x - g->x) / g->vx : INFINITY,
                  ty = g->vy != 0 ? (face_y - g->y) / g->vy : INFINITY;
-    return fmax(fmin(tx, ty) - t, 0);
+    return scan_most(scan_least(tx, ty) - t, 0);
 }
 
 /* Adds the grains of a cell to the list; a chained cell may fill it, then it is tried at once. */
@@ -114,7 +114,7 @@ FORCE_INLINE void conclude(struct ed *ed, uint32_t i, int with)
             e->partner = partner;
         }
     }
-    e->due = fmin(e->contact, ed->clock.now + s);
+    e->due = scan_least(e->contact, ed->clock.now + s);
     schedule(ed, i);
 }
 
@@ -189,7 +189,7 @@ FORCE_INLINE void cross(struct ed *ed, uint32_t i, int with)
      * by a hair; if by more, it turned back in the last moment and stays. */
     const double out_x = vx > 0 ? x - c->east[e->cx] : vx < 0 ? c->west[e->cx] - x : -INFINITY,
                  out_y = vy > 0 ? y - c->north[e->cy] : vy < 0 ? c->south[e->cy] - y : -INFINITY;
-    if (with & WITH_SOLIDS && fmax(out_x, out_y) < -1e-9 * ed->cells.width_x) {
+    if (with & WITH_SOLIDS && scan_most(out_x, out_y) < -1e-9 * ed->cells.width_x) {
         ed->clock.stale++;
         predict(ed, i, with);
         return;
@@ -197,13 +197,13 @@ FORCE_INLINE void cross(struct ed *ed, uint32_t i, int with)
     ed->clock.crossings++;
     const bool along_x = out_x >= out_y, up = along_x ? vx > 0 : vy > 0;
     uint32_t cx = e->cx, cy = e->cy;
-    if (along_x) cx = up ? cx + 1 : cx - 1;
-    else cy = up ? cy + 1 : cy - 1;
+    cx += along_x ? (up ? 1 : UINT32_MAX) : 0;
+    cy += along_x ? 0 : (up ? 1 : UINT32_MAX);
     if (with & WITH_SOLIDS && ed_change_leaves(ed, cx, cy)) {
         ed_change_remove(ed, i);
         return;
     }
-    ed_cells_remove(&ed->cells, ed_cells_index(c, e->cx, e->cy), i);
+    scan_remove(&ed->cells, ed_cells_index(c, e->cx, e->cy), i);
     if (c->wraps_x && (cx == 0 || cx > c->nx)) {
         g->x += cx == 0 ? ed->wrap_x : -ed->wrap_x;
         cx = cx == 0 ? c->nx : 1;
@@ -214,16 +214,26 @@ FORCE_INLINE void cross(struct ed *ed, uint32_t i, int with)
     }
     e->cx = (uint16_t)cx;
     e->cy = (uint16_t)cy;
-    ed_cells_put(&ed->cells, ed_cells_index(c, cx, cy), i);
-    uint32_t list[LIST_ROOM], n = 0, xs[3], ys[3];
+    const uint32_t cell = ed_cells_index(c, cx, cy), step = up ? 1 : UINT32_MAX;
+    scan_put(&ed->cells, cell, i);
+    uint32_t list[LIST_ROOM], n = 0;
     struct scan scan;
-    around(cx, c->nx, c->wraps_x, xs);
-    around(cy, c->ny, c->wraps_y, ys);
-    begin_scan(ed, i, at_seam(c, cx, cy), &scan);
-    for (int k = 0; k < 3; k++) {
-        const uint32_t cell = along_x ? ed_cells_index(c, xs[up ? 2 : 0], ys[k])
-                                      : ed_cells_index(c, xs[k], ys[up ? 2 : 0]);
-        n = gather(ed, cell, list, n, &scan, with);
+    const bool seam = at_seam(c, cx, cy);
+    begin_scan(ed, i, seam, &scan);
+    if (__builtin_expect(!seam, 1)) {
+        const uint32_t side = along_x ? c->stride : 1;
+        const uint32_t middle = cell + (along_x ? step : step * c->stride);
+        n = gather(ed, middle - side, list, n, &scan, with);
+        n = gather(ed, middle, list, n, &scan, with);
+        n = gather(ed, middle + side, list, n, &scan, with);
+    } else {
+        uint32_t xs[3], ys[3];
+        around(cx, c->nx, c->wraps_x, xs);
+        around(cy, c->ny, c->wraps_y, ys);
+        for (int k = 0; k < 3; k++) {
+            n = gather(ed, along_x ? ed_cells_index(c, xs[up ? 2 : 0], ys[k])
+                                   : ed_cells_index(c, xs[k], ys[up ? 2 : 0]), list, n, &scan, with);
+        }
     }
     scan_list(ed, &scan, list, n, with & WITH_SIZES);
     end_scan(ed, &scan);

@@ -168,8 +168,10 @@ bool ed_queue_open(struct ed_queue *queue, const struct ed_event *events, uint32
         struct ed_block *b = &queue->blocks[block];
         for (uint32_t k = 0; k < used; k++) {
             const uint32_t i = b->id[k];
-            if (i >= count || (int64_t)fmin(events[i].due * queue->per_time, 0x1p62) != next) continue;
+            if (i >= count) continue;
             const struct ed_due due = {events[i].due, i};
+            const double part = due.t * queue->per_time - (double)next;
+            if (!(part >= 0 && part < 1)) continue;
             if (queue->ready_count < ED_READY_ROOM) queue->ready[queue->ready_count++] = due;
             else if (!ed_queue_put_heap(queue, due.t, i)) crowd++;
         }

@@ -17,6 +17,10 @@
 /* A squared distance this much above contact still counts as contact: positions are rounded. */
 static const double touch_slack = 1e-10;
 
+/* As fmin and fmax where no NAN comes in; those are calls into a library. */
+static inline double scan_least(double a, double b) { return a < b ? a : b; }
+static inline double scan_most(double a, double b) { return a > b ? a : b; }
+
 struct scan {
     uint32_t i, partner;
     bool     wraps, found;      /* neighbours across a periodic border; someone sooner was found */
@@ -74,6 +78,16 @@ static inline uint32_t scan_gather(const struct ed_cell *cell, uint32_t *list)
     return n;
 }
 
+static inline void scan_put(struct ed_cells *cells, uint32_t cell, uint32_t id)
+{
+    ed_cells_put(cells, cell, id);
+}
+
+static inline void scan_remove(struct ed_cells *cells, uint32_t cell, uint32_t id)
+{
+    ed_cells_remove(cells, cell, id);
+}
+
 static inline __attribute__((always_inline)) void
 scan_list(const struct ed *ed, struct scan *scan, uint32_t *list, uint32_t n, bool sizes)
 {
@@ -88,7 +102,7 @@ scan_list(const struct ed *ed, struct scan *scan, uint32_t *list, uint32_t n, bo
         if (!(q > 0)) continue;
         /* The smaller root of |dr + du s| = reach without cancellation; an overlap by rounding
          * (c < 0) means: now. */
-        const double s = fmax(c / (sqrt(q) - a.b), 0);
+        const double s = scan_most(c / (sqrt(q) - a.b), 0);
         if (!(s < scan->best)) continue;
         scan->best = s;
         scan->partner = list[k];
@@ -106,6 +120,36 @@ scan_gather(const struct ed_cell *cell, uint32_t *list)
     _mm256_storeu_si256((__m256i *)list, ids);
     return ED_CELL_ROOM - (uint32_t)__builtin_popcount(
         (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(empty)));
+}
+
+/* As ed_cells_put and ed_cells_remove, without branches on how full a cell is. */
+static inline __attribute__((always_inline)) void
+scan_put(struct ed_cells *cells, uint32_t cell, uint32_t id)
+{
+    uint32_t *ids = cells->cells[cell].id;
+    const __m256i empty = _mm256_cmpeq_epi32(_mm256_load_si256((const __m256i *)ids),
+                                             _mm256_set1_epi32(-1));
+    const unsigned mask = (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(empty));
+    if (__builtin_expect(mask == 0, 0)) ed_cells_put_chained(cells, cell, id);
+    else ids[__builtin_ctz(mask)] = id;
+}
+
+static inline __attribute__((always_inline)) void
+scan_remove(struct ed_cells *cells, uint32_t cell, uint32_t id)
+{
+    uint32_t *ids = cells->cells[cell].id;
+    const __m256i here = _mm256_load_si256((const __m256i *)ids);
+    const __m256i empty = _mm256_cmpeq_epi32(here, _mm256_set1_epi32(-1)),
+                  mine = _mm256_cmpeq_epi32(here, _mm256_set1_epi32((int)id));
+    const unsigned empties = (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(empty)),
+                   at = (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(mine));
+    if (__builtin_expect(empties == 0 || at == 0, 0)) {
+        ed_cells_remove(cells, cell, id);
+        return;
+    }
+    const int last = __builtin_ctz(empties) - 1;
+    ids[__builtin_ctz(at)] = ids[last];
+    ids[last] = ED_CELL_EMPTY;
 }
 
 /* As above, four candidates at a time: the same operations in each lane. */

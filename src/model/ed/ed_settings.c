@@ -29,7 +29,7 @@ static const struct key keys[] = {
      "impact speed at which the restitution is that of the species, if exponent is not 0"},
     {"cell", KEY_REAL, AT(cell), "nan", 1, 100, "1", NULL,
      "width of a cell in diameters of the largest grain; changes the speed only"},
-    {"margin", KEY_REAL, AT(margin), "0.5", 0, 1, "1", NULL,
+    {"margin", KEY_REAL, AT(margin), "1", 0, 1, "1", NULL,
      "how far a grain may leave its cell, as a share of what the cell is wider than a grain; "
      "changes the speed only"},
     {"vectors", KEY_CHOICE, AT(vectors), "auto", NAN, NAN, NULL, "auto|none",
@@ -74,7 +74,7 @@ struct ed_settings ed_settings_of(const struct scene *scene)
     const struct ed_settings *given = scene_settings(scene, ed_settings_group.name);
     struct ed_settings settings = {
         .t_c = NAN, .wall_restitution = NAN, .wall_friction = NAN, .wall_tangential = NAN,
-        .reference_speed = 1, .cell = NAN, .margin = 0.5
+        .reference_speed = 1, .cell = NAN, .margin = 1
     };
     if (given) settings = *given;
     if (isnan(settings.t_c)) settings.t_c = chosen_cut_off(scene);
