@@ -2,7 +2,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#include "bench_ed.h"
+#include "bench/bench_ed.h"
 
 #include <math.h>
 #include <stdio.h>

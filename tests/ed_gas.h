@@ -21,7 +21,8 @@ static inline struct scenes_run *ed_gas_begin(uint32_t side, double fraction, do
         "placements = ({ kind = \"square\"; spacing = %.15g; count = %u; temperature = 1.0; });"
         "ed = { t_c = %.15g; };"
         "phases = ({ time = %.15g; set = [\"grains.[0].restitution=%.15g\"]; });",
-        (unsigned long long)seed, length, length, 4 / M_PI, spacing * (1 - 1e-9), side * side, t_c, time,
+        (unsigned long long)seed, length, length, 4 / M_PI, spacing * (1 - 1e-9), side * side, t_c,
+        time,
         restitution);
     struct scenes_run *run = scenes_begin(text, "ed");
     CHECK(run->scene->placed.count == side * side);

@@ -5,7 +5,8 @@
 #include "check.h"
 #include "scenes.h"
 
-#define PERIODIC "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";"
+#define PERIODIC                                                                        \
+    "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";"
 #define DISC "grains = ({ radius = 0.5; restitution = 1.0; });"
 
 /* A placement of one grain. */
@@ -63,9 +64,10 @@ static void test_vector_and_plain_loops_give_the_same_bytes(void **unused)
         uint64_t digests[2];
         for (int plain = 0; plain < 2; plain++) {
             char text[600];
-            snprintf(text, sizeof text, "until = 10.0; box = [0.0, 0.0, 27.0, 27.0]; left = \"periodic\";"
-                "right = \"periodic\"; %s placements = ({ kind = \"square\"; spacing = 1.5;"
-                "temperature = 1.0; }); ed = { vectors = \"%s\"; };", kinds[k], plain ? "none" : "auto");
+            snprintf(text, sizeof text, "until = 10.0; box = [0.0, 0.0, 27.0, 27.0];"
+                "left = \"periodic\"; right = \"periodic\"; %s placements = ({ kind = \"square\"; spacing = 1.5;"
+                "temperature = 1.0; }); ed = { vectors = \"%s\"; };", kinds[k],
+                plain ? "none" : "auto");
             struct scenes_run *run = scenes_begin(text, "ed");
             scenes_advance(run, 10);
             CHECK(simulation_count(&run->sim).collisions > 1000);
@@ -98,7 +100,7 @@ static void test_a_dropped_grain_bounces_on_parabolas(void **unused)
     g = scenes_look(run);
     CHECK_NEAR(g.y[0], 0.5 + 0.5 - 0.125, 1e-12);
     grains_free(&g);
-    scenes_advance(run, 20);                    /* all bounces are over at 4 + 2 (2 + 1 + ...) = 12 */
+    scenes_advance(run, 20);            /* all bounces are over at 4 + 2 (2 + 1 + ...) = 12 */
     g = scenes_look(run);
     /* Bounces of at most t_c: v <= g t_c / 2, height v^2 / 2g. */
     CHECK_NEAR(g.y[0], 0.5, 1.26e-9);
@@ -317,7 +319,8 @@ static void test_unequal_grains_exchange_what_their_masses_say(void **unused)
         "          { name = \"small\"; radius = 0.2; restitution = 0.8; });"
         "placements = ({ grains = \"big\"; region = [1.0, 2.0, 5.0, 6.0]; count = 1;"
         "                velocity = (1.0, 0.0); },"
-        "              { grains = \"small\"; region = [9.79, 3.79, 10.21, 4.21]; count = 1; });", "ed");
+        "              { grains = \"small\"; region = [9.79, 3.79, 10.21, 4.21]; count = 1; });",
+        "ed");
     scenes_advance(run, 10);
     struct grains g = scenes_look(run);
     const uint32_t big = g.radius[0] > 1 ? 0 : 1, small = 1 - big;

@@ -53,7 +53,8 @@ static double cool(double r, double t_c, double units, bool *broken, struct coun
     const double from = 10 / omega;
     struct scenes_run *run = ed_gas_begin(100, 0.25, r, from, 5, t_c);
     struct error error = {.text = ""};
-    const enum advance outcome = simulation_advance(&run->sim, from + units * t0, 400000000, &error);
+    const enum advance outcome = simulation_advance(&run->sim, from + units * t0, 400000000,
+                                                    &error);
     *broken = outcome == ADVANCE_BROKEN;
     if (*broken) CHECK(strstr(error.text, "ed.t_c"));
     *end = simulation_count(&run->sim);

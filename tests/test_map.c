@@ -1,4 +1,5 @@
-/* test_map.c - maps lose nothing; density, flow and temperature of known gases come out right. */
+/* test_map.c - maps lose nothing; density, flow and temperature of known gases come out right.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/rng.h"
 #include "check.h"
 #include "measure/map.h"

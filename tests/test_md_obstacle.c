@@ -1,6 +1,7 @@
 /* test_md_obstacle.c - the stream and the obstacle of paper 004 (Table I, discs): force at two
  * radii and on a flat obstacle, its linearity in density and radius, the angle of scattering.
- * References: MODELS section 5, found with independent programs. */
+ * References: MODELS section 5, found with independent programs.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scenes.h"
 
 /* R_ob = radius, rho = density; the flat obstacle is a row of discs as large as the mean grain,
@@ -14,20 +15,21 @@ static struct outcome measure(double radius, double density, bool flat, double r
         snprintf(obstacle, sizeof obstacle, "{ shape = \"row\"; radius = 0.08; center = (0.0, 0.0);"
                  " from = (0.0, %g); to = (0.0, %g); }", -radius + 0.08, radius - 0.08);
     } else {
-        snprintf(obstacle, sizeof obstacle, "{ shape = \"disc\"; center = (0.0, 0.0); radius = %g; }",
+        snprintf(obstacle, sizeof obstacle, "{ shape = \"disc\"; center = (0.0, 0.0); "
+                                            "radius = %g; }",
                  radius);
     }
-    const double column = 0.22 / sqrt(density) / 500, start = 0.04 / sqrt(density);
+    const double column = 0.22 / sqrt(density) / 500, start = 0.1 / sqrt(density);
     const double end = start + rows * column;
     snprintf(text, sizeof text,
         "until = %g; box = [-19.0, -19.0, 19.0, 19.0]; units = \"cgs\"; seed = 3;"
         "left = \"open\"; right = \"open\"; top = \"open\"; bottom = \"open\"; count_max = 20000;"
         "overlap_limit = 0.5;"
         "grains = ({ radius = [0.05, 0.11]; stiffness = 1e10; damping = 1000.0; friction = 0.5; });"
-        "sources = ({ kind = \"stream\"; position = (-5.0, 0.0); width = 16.0;"
+        "sources = ({ kind = \"stream\"; position = (-14.0, 0.0); width = 16.0;"
         "             velocity = (500.0, 0.0); density = %g; });"
         "obstacles = (%s);"
-        "screens = ({ kind = \"circle\"; radius = 12.0; bins = 72; from = %g; });"
+        "screens = ({ kind = \"circle\"; radius = 18.0; bins = 72; from = %g; });"
         "md = { force = \"hertz\"; tangential = \"haff-werner\"; tangential_damping = 1000.0;"
         "       dt = 2.5e-6; skin = 0.5; };", end, density, obstacle, start);
     struct scenes_run *run = scenes_begin(text, "md");

@@ -21,7 +21,7 @@ struct example {
     bool   open;                /* may grains be outside of the box? */
 };
 
-#define SOFT "stiffness = 40000.0;"
+#define SOFT "stiffness = 10000.0;"
 #define GRAINS "grains = ({ radius = 0.5; restitution = 0.8; " SOFT " });"
 #define GAS "placements = ({ kind = \"square\"; spacing = 1.8; temperature = 1.0; });"
 #define PERIODIC "left = \"periodic\"; right = \"periodic\";"                \
@@ -74,7 +74,8 @@ static const struct example examples[] = {
      "screens = ({ kind = \"circle\"; center = (0.0, 0.0); radius = 14.0; });"
      "measure = { collisions = true; };", 6, true, true},
     {"many grains for two threads", "until = 0.5; box = [0.0, 0.0, 75.0, 75.0];" PERIODIC GRAINS
-     "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 16.0; });", 0.5, false, false},
+     "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 16.0; "
+     "});", 0.5, false, false},
 };
 
 enum { EXAMPLES = sizeof examples / sizeof *examples };
@@ -94,21 +95,60 @@ static char where[700];         /* told when a check fails */
         if (!(condition)) fail_msg("%s: not true: %s", where, #condition);              \
     } while (0)
 
-static struct scene *load(const struct model *model, const char *text, const char *setting)
+/* A setting may call for another one that has no default, and then the finding names it: writes
+ * "NAME.KEY=1" for it. */
+static bool find_companion(const struct model *model, const char *text, char companion[100])
+{
+    for (uint32_t k = 0; model && model->settings && k < model->settings->count; k++) {
+        const struct key *key = &model->settings->keys[k];
+        char name[80];
+        snprintf(name, sizeof name, "%s.%s", model->name, key->name);
+        const char *found = key->type == KEY_REAL ? strstr(text, name) : NULL;
+        if (!found) continue;
+        const char next = found[strlen(name)];
+        if (next == '_' || (next >= 'a' && next <= 'z')) continue;      /* a longer name */
+        snprintf(companion, 100, "%s=1.0", name);
+        return true;
+    }
+    return false;
+}
+
+static struct scene *load_with(const struct model *model, const char *text,
+                               const char *const *overrides, uint32_t count,
+                               struct findings *findings)
 {
     const struct key_group *groups[MODEL_MAX];
-    struct findings *findings = calloc(1, sizeof *findings);
     const struct scene_request request = {.path = "test", .text = text, .groups = groups,
-        .overrides = &setting, .override_count = setting != NULL,
-        .group_count = model_settings(groups), .place = true};
+        .overrides = overrides, .override_count = count, .group_count = model_settings(groups),
+        .place = true};
+    *findings = (struct findings){0};
     struct scene *scene = scene_load(&request, findings);
     for (uint32_t p = 0; scene && model && model->resolve && p < scene->phase_count; p++) {
         model->resolve(scene->phases[p], findings);
     }
-    for (uint32_t k = 0; k < findings->count && k < FINDINGS_MAX; k++) {
-        if (findings->list[k].kind == FINDING_ERROR) {
-            fail_msg("%s: %s", where, findings->list[k].text);
-        }
+    if (!findings->errors) return scene;
+    scene_free(scene);
+    return NULL;
+}
+
+static struct scene *load(const struct model *model, const char *text, const char *setting)
+{
+    struct findings *findings = calloc(1, sizeof *findings);
+    /* Soft grains overlap deeply at a hard hit; here that is no failure. */
+    const char *overrides[3] = {"overlap_limit=1.0"};
+    uint32_t count = 1;
+    char companion[100];
+    if (setting) overrides[count++] = setting;
+    struct scene *scene = load_with(model, text, overrides, count, findings);
+    for (uint32_t k = 0; !scene && k < findings->count && k < FINDINGS_MAX && count < 3; k++) {
+        if (findings->list[k].kind != FINDING_ERROR) continue;
+        if (!find_companion(model, findings->list[k].text, companion)) continue;
+        overrides[count++] = companion;
+        scene = load_with(model, text, overrides, count, findings);
+    }
+    for (uint32_t k = 0; !scene && k < findings->count && k < FINDINGS_MAX; k++) {
+        if (findings->list[k].kind != FINDING_ERROR) continue;
+        fail_msg("%s: %s", where, findings->list[k].text);
     }
     EXPECT(scene);
     free(findings);

@@ -1,4 +1,5 @@
-/* test_scene.c - a scene as a whole: round trip, built-in scenes, effects, phases, quick forms. */
+/* test_scene.c - a scene as a whole: round trip, built-in scenes, effects, phases, quick forms.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/asset.h"
 #include "base/file.h"
 #include "check.h"
@@ -285,7 +286,7 @@ static void test_effects_follow_from_keys_and_name_them(void **unused)
         "grains = (\n"
         "    { radius = 0.5; restitution = 1; friction = 0.25; }\n"
         "); placements = ( { count = 20; } );", NULL);
-    CHECK(scene->effects == (EFFECT_FRICTION | EFFECT_ROTATION | EFFECT_DISSIPATION | EFFECT_WALLS
+    CHECK(scene->effects == (EFFECT_FRICTION | EFFECT_DISSIPATION | EFFECT_WALLS
                              | EFFECT_OUTFLOW));
     CHECK(explains(scene, EFFECT_FRICTION, true, "grains.[0].friction = 0.25 (effects.cfg:3)"));
     CHECK(explains(scene, EFFECT_OUTFLOW, true, "effects.cfg:1"));

@@ -1,5 +1,6 @@
 /* test_scene_bad.c - every file in tests/bad is refused, at the right line and for the right
- * reason.  Its first line says which: "# expect: LINE: part of the message" (line 0: none). */
+ * reason.  Its first line says which: "# expect: LINE: part of the message" (line 0: none).
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/file.h"
 #include "check.h"
 #include "model/model.h"

@@ -1,4 +1,4 @@
-/* arena.c - see arena.h. */
+/* arena.c - see arena.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/arena.h"
 
 #include <stdint.h>

@@ -3,6 +3,8 @@
  *
  * An option that only sets a key of the scene says which, and becomes an override like -s
  * KEY=VALUE, in the order given; so its value is checked in one place, by the scene's keys.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef OPTIONS_H
 #define OPTIONS_H

@@ -1,4 +1,5 @@
-/* overlay_legend_bars.c - colour bars with ticks, unit and end marks; or the names of species. */
+/* overlay_legend_bars.c - colour bars with ticks, unit and end marks; or the names of species.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/overlay_legend.h"
 
 #include "draw/colormap.h"

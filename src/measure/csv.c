@@ -1,4 +1,4 @@
-/* csv.c - see csv.h. */
+/* csv.c - see csv.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measure/csv.h"
 
 #include "base/file.h"

@@ -1,5 +1,6 @@
 /* csv.h - maps and grains as tables: a header line, a line "# units: ...", then numbers that read
- * back to the same bits. */
+ * back to the same bits.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef CSV_H
 #define CSV_H
 

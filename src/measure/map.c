@@ -3,6 +3,7 @@
  * The grains of a snapshot are split into a number of parts that depends on the grid alone, and
  * each part adds into cells of its own for the whole life of the map; the parts meet, in order,
  * when a field is asked for.  So the bytes of a map do not depend on the number of threads.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "measure/map.h"
 

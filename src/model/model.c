@@ -1,4 +1,5 @@
-/* model.c - the list of models; nothing else in sandreel names one. */
+/* model.c - the list of models; nothing else in sandreel names one.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/model.h"
 
 #include <stdio.h>

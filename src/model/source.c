@@ -1,28 +1,17 @@
-/* source.c - see source.h. */
+/* source.c - see source.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/source.h"
 
 #include "base/rng.h"
+#include "scene/resolve.h"
 
 #include <math.h>
-#include <string.h>
 
 static const uint64_t rng_key = 0x736f75726365;         /* "source": apart from other streams */
 
 static uint16_t species_of(const struct scene *scene, const struct source *source)
 {
-    for (uint32_t k = 0; k < scene->species_count; k++) {
-        if (strcmp(scene->species[k].name, source->grains) == 0) return (uint16_t)k;
-    }
-    return 0;
-}
-
-static double radius_max(const struct species *species)
-{
-    double radius = species->radius[1];
-    for (uint32_t k = 0; k < species->radii.count; k++) {
-        radius = k == 0 ? species->radii.values[0] : fmax(radius, species->radii.values[k]);
-    }
-    return radius;
+    const uint32_t species = resolve_species(scene, source->grains);
+    return (uint16_t)(species < scene->species_count ? species : 0);
 }
 
 static double draw_radius(const struct species *species, struct rng *rng)
@@ -37,7 +26,7 @@ static double draw_radius(const struct species *species, struct rng *rng)
 /* Distance of neighbours in a stream, along it and across (004 eqs. 2a and 2b). */
 static double stream_spacing(const struct scene *scene, const struct source *source)
 {
-    const double radius = radius_max(&scene->species[species_of(scene, source)]);
+    const double radius = resolve_radius_max(&scene->species[species_of(scene, source)]);
     return 2 * radius * sqrt(1 / source->density);
 }
 
@@ -130,10 +119,7 @@ uint32_t source_batch_max(const struct scene *scene)
         if (source->kind == SOURCE_STREAM) {
             /* A gap is never less than two of the smallest radii. */
             const struct species *species = &scene->species[species_of(scene, source)];
-            double radius = species->radius[0];
-            for (uint32_t k = 0; k < species->radii.count; k++) {
-                radius = k == 0 ? species->radii.values[0] : fmin(radius, species->radii.values[k]);
-            }
+            const double radius = resolve_radius_min(species);
             count = (uint32_t)(source->width / (2 * radius)) + 2;
         }
         most = count > most ? count : most;

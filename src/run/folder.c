@@ -1,4 +1,7 @@
-/* folder.c - see folder.h. */
+/* folder.c - see folder.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/folder.h"
 
 #include <dirent.h>
@@ -82,6 +85,12 @@ bool folder_claim(const char *directory, bool force, struct error *error)
         return error_set_code(error, EXIT_USAGE, "%s: this directory is there already and not "
             "empty; choose another with -o, go on with --resume, or overwrite it with --force",
             directory);
+    }
+    /* Only a former run is cleared away; anywhere else the files are put beside what is there. */
+    char scene[FILE_PATH_MAX], manifest[FILE_PATH_MAX];
+    if (!file_exists(folder_path(scene, directory, "scene.cfg"))
+        || !file_exists(folder_path(manifest, directory, "manifest.json"))) {
+        return true;
     }
     static const char *const folders[] = {"frames", "maps", "dump", "checkpoint"};
     static const char *const files[] = {"scene.cfg", "manifest.json", "log.csv", "broken.png"};

@@ -1,4 +1,7 @@
-/* mapper.c - see mapper.h. */
+/* mapper.c - see mapper.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/mapper.h"
 
 #include "measure/csv.h"

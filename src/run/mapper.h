@@ -1,4 +1,7 @@
-/* mapper.h - field maps as files: PNG with a colour bar, .npy, VTI and CSV. */
+/* mapper.h - field maps as files: PNG with a colour bar, .npy, VTI and CSV.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef MAPPER_H
 #define MAPPER_H
 

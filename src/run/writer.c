@@ -1,4 +1,7 @@
-/* writer.c - see writer.h. */
+/* writer.c - see writer.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/writer.h"
 
 #include "base/file.h"

@@ -1,4 +1,4 @@
-/* check.c - see check.h. */
+/* check.c - see check.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/check.h"
 
 #include "scene/place.h"

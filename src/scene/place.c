@@ -1,4 +1,4 @@
-/* place.c - see place.h. */
+/* place.c - see place.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/place.h"
 
 #include "base/rng.h"

@@ -3,6 +3,7 @@
  * Read the text into a tree, lay quick_set and the overrides over it, parse the tree through the
  * key tables, derive what follows, check, place.  A phase is the same text read once more with
  * the overrides of the phases up to it; it shares the placed grains of the whole scene.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "scene/scene.h"
 

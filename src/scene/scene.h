@@ -5,6 +5,7 @@
  * times and masses are in the scene's own units.  What a scene does not mention does not exist.
  * The structs below are the targets of the key tables in scene_keys.c; docs/scenes.md is written
  * from the same tables.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef SCENE_H
 #define SCENE_H

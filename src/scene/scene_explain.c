@@ -1,5 +1,6 @@
 /* scene_explain.c - which effects a scene calls for, and by which key: derived here and nowhere
- * else. */
+ * else.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_explain.h"
 
 #include "scene/resolve.h"
@@ -191,8 +192,7 @@ static bool derive(const struct scene *scene, uint32_t bit, struct scene_reason 
     case EFFECT_BIT_SHEAR:        return off(reason, "no border is sheared");
     /* How friction is carried is a model's own: discs spin, springs remember, lattices do
      * neither. */
-    case EFFECT_BIT_ROTATION:
-        return off(reason, "no torque turns a grain");
+    case EFFECT_BIT_ROTATION:     return off(reason, "no torque turns a grain");
     default:
         return off(reason, "the model's tangential law does not ask for it");
     }

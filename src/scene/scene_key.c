@@ -1,4 +1,5 @@
-/* scene_key.c - every key of a scene file, once: see key.h for what a row says. */
+/* scene_key.c - every key of a scene file, once: see key.h for what a row says.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_key.h"
 
 #include <math.h>

@@ -24,8 +24,8 @@ static bool has_solids(const struct scene *scene)
 
 static uint32_t capacity(const struct scene *scene)
 {
-    uint32_t count = scene->count_max > scene->placed.count ? scene->count_max : scene->placed.count;
-    return count > 0 ? count : 1;
+    const uint32_t most = scene->count_max, placed = scene->placed.count;
+    return most > placed ? most : placed > 0 ? placed : 1;
 }
 
 static bool take_arrays(struct ed *ed)
@@ -110,7 +110,8 @@ static void place_grains(struct ed *ed)
     const struct placed *placed = &ed->scene->placed;
     ed->count = ed->next_id = placed->count;
     for (uint32_t i = 0; i < placed->count; i++) {
-        const struct species *species = &ed->scene->species[placed->species ? placed->species[i] : 0];
+        const uint16_t kind = placed->species ? placed->species[i] : 0;
+        const struct species *species = &ed->scene->species[kind];
         ed->grains[i] = (struct ed_grain){placed->x[i], placed->y[i], placed->vx[i], placed->vy[i]};
         ed->events[i] = (struct ed_event){INFINITY, INFINITY, ED_NOBODY, 0, 0, -INFINITY};
         ed->id[i] = i;
@@ -189,10 +190,12 @@ static void *ed_create(const struct scene *scene, struct error *error)
     ed->kernel = (scene->effects & (EFFECT_POLYDISPERSE | EFFECT_MIXTURE) ? ED_KERNEL_SIZES : 0u)
                | (has_solids(scene) ? ED_KERNEL_SOLIDS : 0u)
                | (scene->effects & (EFFECT_FRICTION | EFFECT_ROTATION) ? ED_KERNEL_SPINS : 0u);
-    if (!take_arrays(ed) || !make_cells(ed) || !ed_queue_create(&ed->queue, ed->count_max, &ed->arena)
+    if (!take_arrays(ed) || !make_cells(ed)
+        || !ed_queue_create(&ed->queue, ed->count_max, &ed->arena)
         || !ed_law_create(&ed->law, scene, &ed->settings, &ed->arena)
         || !tally_create(&ed->tally, scene, &ed->arena)) {
-        error_set(error, "not enough memory for %u grains of the event-driven model", ed->count_max);
+        error_set(error, "not enough memory for %u grains of the event-driven model",
+                  ed->count_max);
         ed_destroy(ed);
         return NULL;
     }
@@ -269,8 +272,10 @@ static void ed_observe(const void *state, struct grains *out)
     out->count = out->contact_count = out->missed = 0;
     for (uint32_t i = 0; i < ed->count; i++) {
         const struct ed_grain *g = &ed->grains[i];
-        const double x = into_box(g->x + t * (g->vx + 0.5 * ed->gx * t), box[0], ed->wrap_x, ed->unwrap_x),
-                     y = into_box(g->y + t * (g->vy + 0.5 * ed->gy * t), box[1], ed->wrap_y, ed->unwrap_y);
+        const double flown_x = g->x + t * (g->vx + 0.5 * ed->gx * t),
+                     flown_y = g->y + t * (g->vy + 0.5 * ed->gy * t);
+        const double x = into_box(flown_x, box[0], ed->wrap_x, ed->unwrap_x),
+                     y = into_box(flown_y, box[1], ed->wrap_y, ed->unwrap_y);
         const double r = ed_radius(ed, i);
         if (!all && (x + r < w[0] || y + r < w[1] || x - r > w[2] || y - r > w[3])) continue;
         if (out->count == out->capacity) {
@@ -355,9 +360,15 @@ static void ed_count(const void *state, struct counters *out)
     out->overlap_max = NAN;
 }
 
-static const struct tally *ed_tally(const void *state) { return &((const struct ed *)state)->tally; }
+static const struct tally *ed_tally(const void *state)
+{
+    return &((const struct ed *)state)->tally;
+}
 
-static const struct fault *ed_fault(const void *state) { return &((const struct ed *)state)->fault; }
+static const struct fault *ed_fault(const void *state)
+{
+    return &((const struct ed *)state)->fault;
+}
 
 static uint64_t ed_memory(const struct scene *scene)
 {
@@ -370,7 +381,8 @@ static uint64_t ed_memory(const struct scene *scene)
 
 const struct model model_ed = {
     .name     = "ed",
-    .summary  = "Hard discs that fly freely from collision to collision; the TC rule lets them rest.",
+    .summary  = "Hard discs that fly freely from collision to collision (ED); the TC rule lets "
+                "them rest (TCED).",
     .work     = "events",
     .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_ROTATION | EFFECT_FRICTION
               | EFFECT_POLYDISPERSE | EFFECT_MIXTURE | EFFECT_PERIODIC | EFFECT_WALLS

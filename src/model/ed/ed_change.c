@@ -106,7 +106,9 @@ bool ed_change_solid(struct ed *ed, uint32_t i)
     }
     if (part == ED_PART_SCREEN) {
         const struct ed_path p = ed_walls_path(ed, i);
-        const double spin = ed->spin ? ed->spin[i] : 0, m = ed_mass(ed, i), radius = ed_radius(ed, i);
+        const double spin = ed->spin ? ed->spin[i] : 0;
+        const double m = ed_mass(ed, i), radius = ed_radius(ed, i);
+        const double inertia = ed->law.inertia_factor[ed_species(ed, i)] * m * radius * radius;
         const struct screen *screen = &ed->scene->screens[ed_partner_index(partner)];
         /* On the line itself rounding decides; a hair behind it there is no doubt. */
         const double hair = 1e-9 * radius;
@@ -115,13 +117,14 @@ bool ed_change_solid(struct ed *ed, uint32_t i)
         const double away = fmax(hypot(dx, dy), 1e-300);
         tally_cross(&ed->tally, ed->scene, ed_scene_time(&ed->clock, ed->clock.now),
                     p.x + hair * (line ? 1 : dx / away), p.y + hair * (line ? 0 : dy / away),
-                    p.vx, p.vy, spin, m, ed->law.inertia_factor[ed_species(ed, i)] * m * radius * radius);
+                    p.vx, p.vy, spin, m, inertia);
         ed_change_remove(ed, i);
         return false;
     }
     struct ed_touch touch;
     const uint32_t w = ed_partner_index(partner);
-    if (ed->walls.now[w].present && ed_walls_touch(ed, i, partner, &touch)) bounce(ed, i, w, &touch);
+    const bool meets = ed->walls.now[w].present && ed_walls_touch(ed, i, partner, &touch);
+    if (meets) bounce(ed, i, w, &touch);
     else ed->clock.stale++;
     return true;
 }

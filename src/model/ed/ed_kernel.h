@@ -231,8 +231,10 @@ FORCE_INLINE void cross(struct ed *ed, uint32_t i, int with)
         around(cx, c->nx, c->wraps_x, xs);
         around(cy, c->ny, c->wraps_y, ys);
         for (int k = 0; k < 3; k++) {
-            n = gather(ed, along_x ? ed_cells_index(c, xs[up ? 2 : 0], ys[k])
-                                   : ed_cells_index(c, xs[k], ys[up ? 2 : 0]), list, n, &scan, with);
+            const uint32_t ahead = up ? 2 : 0;
+            const uint32_t new_cell = along_x ? ed_cells_index(c, xs[ahead], ys[k])
+                                              : ed_cells_index(c, xs[k], ys[ahead]);
+            n = gather(ed, new_cell, list, n, &scan, with);
         }
     }
     scan_list(ed, &scan, list, n, with & WITH_SIZES);

@@ -165,7 +165,8 @@ scan_list(const struct ed *ed, struct scan *scan, uint32_t *list, uint32_t n, bo
     /* The last quadruple is filled up with the grain that is nowhere. */
     for (uint32_t k = n; k < n + 3; k++) list[k] = ed->count_max;
     for (uint32_t k = 0; k < n; k += 4) {
-        const __m256d a = _mm256_load_pd(&grains[list[k]].x), b = _mm256_load_pd(&grains[list[k + 1]].x),
+        const __m256d a = _mm256_load_pd(&grains[list[k]].x),
+                      b = _mm256_load_pd(&grains[list[k + 1]].x),
                       c = _mm256_load_pd(&grains[list[k + 2]].x),
                       d = _mm256_load_pd(&grains[list[k + 3]].x);
         const __m256d ab_low = _mm256_unpacklo_pd(a, b), ab_high = _mm256_unpackhi_pd(a, b),
@@ -192,13 +193,14 @@ scan_list(const struct ed *ed, struct scan *scan, uint32_t *list, uint32_t n, bo
             reach2 = _mm256_mul_pd(reach, reach);
         }
         const __m256d bb = _mm256_add_pd(_mm256_mul_pd(dx, du), _mm256_mul_pd(dy, dv));
-        const __m256d cc = _mm256_sub_pd(_mm256_add_pd(_mm256_mul_pd(dx, dx), _mm256_mul_pd(dy, dy)),
-                                         reach2);
+        const __m256d d2 = _mm256_add_pd(_mm256_mul_pd(dx, dx), _mm256_mul_pd(dy, dy));
+        const __m256d cc = _mm256_sub_pd(d2, reach2);
         const __m256d u2 = _mm256_add_pd(_mm256_mul_pd(du, du), _mm256_mul_pd(dv, dv));
         const __m256d q = _mm256_sub_pd(_mm256_mul_pd(bb, bb), _mm256_mul_pd(u2, cc));
         const __m256d meets = _mm256_and_pd(_mm256_cmp_pd(bb, graze, _CMP_LT_OQ),
                                             _mm256_cmp_pd(q, zero, _CMP_GT_OQ));
-        const __m256d s = _mm256_max_pd(_mm256_div_pd(cc, _mm256_sub_pd(_mm256_sqrt_pd(q), bb)), zero);
+        const __m256d root = _mm256_div_pd(cc, _mm256_sub_pd(_mm256_sqrt_pd(q), bb));
+        const __m256d s = _mm256_max_pd(root, zero);
         const __m256d sooner = _mm256_and_pd(meets, _mm256_cmp_pd(s, best, _CMP_LT_OQ));
         best = _mm256_blendv_pd(best, s, sooner);
         who = _mm256_blendv_pd(who, place, sooner);

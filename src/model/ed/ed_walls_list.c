@@ -59,7 +59,8 @@ static void list_changes(struct ed_walls *walls)
                                  wall_is_gate(wall) ? wall->opens : INFINITY,
                                  wall_is_gate(wall) ? wall->closes : INFINITY};
         for (int k = 0; k < 4; k++) {
-            if (times[k] > 0 && isfinite(times[k])) walls->changes[walls->change_count++] = times[k];
+            if (!(times[k] > 0) || !isfinite(times[k])) continue;
+            walls->changes[walls->change_count++] = times[k];
         }
     }
     if (walls->change_count) {

@@ -1,4 +1,5 @@
-/* md.c - the soft-disc model: create, advance, archive. */
+/* md.c - the soft-disc model: create, advance, archive.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/md/md.h"
 
 #include "model/md/md_fault.h"
@@ -234,9 +235,9 @@ static void md_archive(void *state, struct archive *archive)
     archive_array(archive, "md.cursors", md->cursors, md->scene->source_count);
     archive_value(archive, "md.retry_step", &md->retry_step);
     uint64_t *const totals[] = {&md->begun, &md->tangential, &md->rebuilds, &md->grains_in,
-                                &md->grains_out};
+                                &md->grains_out, &md->rejected};
     const char *const names[] = {"md.begun", "md.tangential", "md.rebuilds", "md.grains_in",
-                                 "md.grains_out"};
+                                 "md.grains_out", "md.rejected"};
     for (size_t k = 0; k < sizeof totals / sizeof *totals; k++) {
         archive_value(archive, names[k], totals[k]);
     }

@@ -8,6 +8,7 @@
  *
  * Time runs in leapfrog: `hx hy hrim` are velocities half a step back, `ux uy rim` the ones
  * predicted for now, u = h + a dt/2, which velocity-dependent forces read (second order).
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef MD_H
 #define MD_H
@@ -55,7 +56,8 @@ struct link { uint32_t i, j; };
 enum {
     LINK_IMAGE_SHIFT = 27,                      /* 4 bits: which periodic image */
     LINK_INDEX = (1 << LINK_IMAGE_SHIFT) - 1,   /* at most 134 million grains */
-    LINK_IMAGES = 9
+    LINK_IMAGES = 9,
+    LINKS_AHEAD = 32            /* whose partner is fetched into the cache beforehand */
 };
 #define LINK_TOUCHES 0x80000000u
 

@@ -2,6 +2,7 @@
  *
  * Grains leave when the list is made anew, that is before any has moved farther than half the
  * skin.  One that leaves is marked by zero inverse mass and dropped by the sort.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/md/md_flow.h"
 
@@ -101,6 +102,9 @@ static bool let_batch_in(struct md *md, uint32_t s)
         if (source->kind == SOURCE_POINT) {
             grain = md->batch[k];                               /* it may have waited there */
             if (!has_room(md, &grain)) return false;
+        } else if (!has_room(md, &grain)) {
+            md->rejected++;                                     /* a stream does not wait */
+            continue;
         }
         md_flow_add(md, &grain, 0);
         md->tally.mass_in += scene_mass(&md->scene->species[grain.species], grain.radius);

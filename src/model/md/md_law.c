@@ -1,7 +1,8 @@
-/* md_law.c - see md_law.h. */
+/* md_law.c - see md_law.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/md/md_law.h"
 
-#include <float.h>
+#include "scene/resolve.h"
+
 #include <math.h>
 
 /* With clipping the contact ends when the force is zero: x + 2 z x' = 0 for
@@ -121,8 +122,8 @@ static void set_damping(struct md_pair_law *pair, const struct md_settings *sett
         pair->damping_mass = 2 * eta * sqrt(pair->stiffness);
     } else {
         /* A viscoelastic contact has no one restitution: it holds at the speed estimated. */
-        const double ra = 0.5 * (a->radius[0] + a->radius[1]);
-        const double rb = 0.5 * (b->radius[0] + b->radius[1]);
+        const double ra = resolve_radius_mean(a);
+        const double rb = resolve_radius_mean(b);
         const double ma = scene_mass(a, ra), mb = scene_mass(b, rb);
         const double length = md_law_hertz_length(pair->stiffness, ma * mb / (ma + mb),
                                                   ra * rb / (ra + rb), speed);
@@ -181,10 +182,7 @@ double md_law_contact_time(const struct scene *scene, const struct md_settings *
     double shortest = INFINITY;
     for (uint32_t k = 0; k < scene->species_count; k++) {
         const struct species *s = &scene->species[k];
-        double radius = s->radius[0];
-        for (uint32_t r = 0; r < s->radii.count; r++) {
-            radius = r == 0 ? s->radii.values[0] : fmin(radius, s->radii.values[r]);
-        }
+        const double radius = resolve_radius_min(s);
         const double mass = 0.5 * scene_mass(s, radius);        /* of a pair of the smallest */
         double time;
         if (settings->force == MD_LINEAR) {

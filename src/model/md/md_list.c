@@ -4,6 +4,7 @@
  * Grains are sorted by cell, the shorter side of the box running fastest; a pair belongs to the
  * grain of lower index.  Strips (md.h) list their pairs side by side, each into its own stretch
  * of a scratch array, and the stretches are then pushed together.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/md/md_list.h"
 
@@ -57,7 +58,7 @@ bool md_list_create(struct md *md)
     md->strip_max = n / STRIP_GRAINS + 1;
     s->cell_max = 2 * n + 64;
     const bool springs = md->springs || md->law.spring;
-    return arena_array(arena, &md->links, md->link_max)
+    return arena_array(arena, &md->links, md->link_max + LINKS_AHEAD)
         && arena_array(arena, &md->springs, springs ? md->link_max : 0)
         && arena_array(arena, &md->incoming, md->link_max / 2)
         && arena_array(arena, &md->cross_push, md->strip_max > 1 ? md->link_max / 2 : 0)

@@ -1,7 +1,9 @@
-/* md_settings.c - the keys of `md`, and how a stiffness and a time step are chosen and judged. */
+/* md_settings.c - the keys of `md`, and how a stiffness and a time step are chosen and judged.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/md/md_settings.h"
 
 #include "model/md/md_law.h"
+#include "scene/resolve.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -70,15 +72,6 @@ double md_settings_speed(const struct scene *scene)
     return sqrt(speed * speed + fall2) + wall_speed;
 }
 
-static double largest_radius(const struct species *s)
-{
-    double radius = s->radius[1];
-    for (uint32_t k = 0; k < s->radii.count; k++) {
-        radius = k == 0 ? s->radii.values[0] : fmax(radius, s->radii.values[k]);
-    }
-    return radius;
-}
-
 /* Weight of the column that rests on one grain, as if all grains lay at the bottom. */
 static double static_load(const struct scene *scene, const struct species *s, double radius)
 {
@@ -102,14 +95,14 @@ static double static_load(const struct scene *scene, const struct species *s, do
 static double stiffness_for(const struct scene *scene, const struct md_settings *settings,
                             const struct species *s, double speed)
 {
-    const double radius = largest_radius(s), xi = settings->overlap * radius;
+    const double radius = resolve_radius_max(s), xi = settings->overlap * radius;
     const double mass = scene_mass(s, radius), load = static_load(scene, s, radius);
     if (settings->force == MD_LINEAR) return fmax(mass * speed * speed / (xi * xi), load / xi);
     const double impact = 15.0 / 8.0 * mass * speed * speed / (sqrt(radius) * pow(xi, 2.5));
     return fmax(impact, 1.5 * load / (sqrt(0.5 * radius) * pow(xi, 1.5)));
 }
 
-static void resolve_species(struct scene *scene, struct md_settings *settings,
+static void complete_species(struct scene *scene, struct md_settings *settings,
                             struct findings *findings)
 {
     for (uint32_t k = 0; k < scene->species_count; k++) {
@@ -123,7 +116,7 @@ static void resolve_species(struct scene *scene, struct md_settings *settings,
             }
             s->stiffness = stiffness_for(scene, settings, s, settings->speed);
             /* Without motion or gravity any stiffness will do. */
-            if (!(s->stiffness > 0)) s->stiffness = scene_mass(s, largest_radius(s));
+            if (!(s->stiffness > 0)) s->stiffness = scene_mass(s, resolve_radius_max(s));
         }
         if (!(s->stiffness > 0)) {
             findings_tell(findings, scene, FINDING_ERROR, place, "a stiffness must be positive; "
@@ -134,7 +127,7 @@ static void resolve_species(struct scene *scene, struct md_settings *settings,
     }
 }
 
-static void resolve_tangential(struct scene *scene, struct md_settings *settings,
+static void complete_tangential(struct scene *scene, struct md_settings *settings,
                                struct findings *findings)
 {
     double friction = 0;
@@ -156,7 +149,7 @@ static void resolve_tangential(struct scene *scene, struct md_settings *settings
         /* So steep that sliding sets in at a small share of the impact speed, yet soft enough
          * for the time step: critical for the tangential motion of a pair. */
         const struct species *s = &scene->species[0];
-        const double mass = 0.5 * scene_mass(s, largest_radius(s));
+        const double mass = 0.5 * scene_mass(s, resolve_radius_max(s));
         settings->tangential_damping = settings->force == MD_LINEAR ? sqrt(s->stiffness * mass)
             : mass * M_PI / md_law_contact_time(scene, settings, settings->speed);
     } else if (friction > 0) {
@@ -165,7 +158,7 @@ static void resolve_tangential(struct scene *scene, struct md_settings *settings
     }
 }
 
-static void resolve_step(struct scene *scene, struct md_settings *settings,
+static void complete_step(struct scene *scene, struct md_settings *settings,
                          struct findings *findings)
 {
     const double contact = md_law_contact_time(scene, settings, settings->speed);
@@ -192,7 +185,7 @@ void md_settings_resolve(struct scene *scene, struct findings *findings)
     if (!settings || scene->species_count == 0) return;
     if (isnan(settings->speed)) settings->speed = md_settings_speed(scene);
     if (!(settings->speed > 0)) settings->speed = scene->radius_max > 0 ? scene->radius_max : 1;
-    resolve_species(scene, settings, findings);
-    resolve_tangential(scene, settings, findings);
-    resolve_step(scene, settings, findings);
+    complete_species(scene, settings, findings);
+    complete_tangential(scene, settings, findings);
+    complete_step(scene, settings, findings);
 }

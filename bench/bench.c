@@ -1,10 +1,14 @@
-/* bench.c - see bench.h. */
-#include "run/bench.h"
+/* bench.c - see bench.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#include "bench/bench.h"
 
 #include "base/clock.h"
 #include "base/rng.h"
-#include "bench_draw.h"
-#include "draw/image.h"
+#include "bench/bench_ed.h"
+#include "bench/bench_md.h"
+#include "draw/painter.h"
 #include "measure/map.h"
 #include "model/simulation.h"
 #include "run/setup.h"
@@ -15,6 +19,12 @@
 #include <string.h>
 
 enum { REPEATS_MAX = 25 };
+
+static void stop(struct bench_result *result, double cpu, double wall)
+{
+    result->cpu = clock_process() - cpu;
+    result->wall = clock_wall() - wall;
+}
 
 /* Simulates the scene for the case's time; work is the model's steps, or each grain's. */
 static bool measure_model(const struct bench_case *which, struct bench_result *result,
@@ -36,8 +46,7 @@ static bool measure_model(const struct bench_case *which, struct bench_result *r
         const struct counters before = simulation_count(&sim);
         const double cpu = clock_process(), wall = clock_wall();
         done = simulation_advance(&sim, which->amount, UINT64_MAX, error) == ADVANCE_REACHED;
-        result->cpu = clock_process() - cpu;
-        result->wall = clock_wall() - wall;
+        stop(result, cpu, wall);
         const struct counters after = simulation_count(&sim);
         const double work = (double)(after.steps - before.steps)
                           * (which->per_grain ? (double)after.grains : 1);
@@ -48,12 +57,67 @@ static bool measure_model(const struct bench_case *which, struct bench_result *r
     return done;
 }
 
+/* The settled bed of frictional discs that other DEM codes are measured on (bench_md.h); the tile is
+ * settled once for all cases.  `amount` is the number of threads, `per_grain` means friction. */
+static bool measure_bed(const struct bench_case *which, struct bench_result *result,
+                        struct error *error)
+{
+    static struct grains tile;
+    static bool settled;
+    const struct bench_md_case bed = {.tiles = 10, .steps = 100, .repeats = 1,
+                                      .friction = which->per_grain};
+    struct bench_md_result measured;
+    if (!settled && !bench_md_settle(&tile, error)) return false;
+    settled = true;
+    const double cpu = clock_process(), wall = clock_wall();
+    if (!bench_md(&bed, &tile, &measured, error)) return false;
+    stop(result, cpu, wall);
+    const int threads = (int)which->amount;
+    result->value = threads == 1 ? measured.per_core[1] : measured.particle_steps[threads];
+    return true;
+}
+
+/* Hard discs in a periodic box (bench_ed.h).  `amount` is the number of grains, `scene` the area
+ * fraction, `set` the restitution. */
+static bool measure_discs(const struct bench_case *which, struct bench_result *result,
+                          struct error *error)
+{
+    const bool large = which->amount > 50000;
+    const struct bench_ed_case gas = {.side = (uint32_t)sqrt(which->amount),
+        .fraction = strtod(which->scene, NULL), .restitution = strtod(which->set, NULL),
+        .settle = 10, .collisions = large ? 20 : 80};
+    struct bench_ed_result measured;
+    const double wall = clock_wall();
+    if (!bench_ed(&gas, &measured, error)) return false;
+    result->wall = clock_wall() - wall;
+    result->value = measured.ns;
+    result->cpu = 1e-9 * measured.ns * (double)measured.collisions;
+    return true;
+}
+
 static const char square_scene[] =
     "model = \"md\"; until = 1.0; box = (0.0, 0.0, 1000.0, 1000.0);\n"
     "grains = ({ radius = 0.4; restitution = 0.9; });\n"
     "placements = ({ count = 1; });\n";
 
-/* Grains thrown at random into a square, mapped with the default kernel. */
+/* Grains thrown at random into a square of this side, at random speeds. */
+static bool scatter(struct grains *grains, uint32_t count, double side, struct error *error)
+{
+    if (!grains_create(grains, count, 0, error)) return false;
+    struct rng rng = rng_stream(1, 0, 0);
+    grains->count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        grains->x[i] = side * rng_uniform(&rng);
+        grains->y[i] = side * rng_uniform(&rng);
+        grains->vx[i] = rng_normal(&rng);
+        grains->vy[i] = rng_normal(&rng);
+        grains->radius[i] = 0.4;
+        grains->mass[i] = 1;
+    }
+    return true;
+}
+
+/* Random grains mapped with the default kernel. */
 static bool measure_map(const struct bench_case *which, struct bench_result *result,
                         struct error *error)
 {
@@ -62,26 +126,15 @@ static bool measure_map(const struct bench_case *which, struct bench_result *res
                                           .place = false};
     struct grains grains = {0};
     struct map *map = NULL;
-    const uint32_t count = (uint32_t)which->amount;
-    bool done = setup_load(&setup, &request, error) && grains_create(&grains, count, 0, error)
+    bool done = setup_load(&setup, &request, error)
+        && scatter(&grains, (uint32_t)which->amount, 1000, error)
         && (map = map_create(setup.scene, &setup.scene->measure, error));
     if (done) {
-        struct rng rng = rng_stream(1, 0, 0);
-        grains.count = count;
-        for (uint32_t i = 0; i < count; i++) {
-            grains.x[i] = 1000 * rng_uniform(&rng);
-            grains.y[i] = 1000 * rng_uniform(&rng);
-            grains.vx[i] = rng_normal(&rng);
-            grains.vy[i] = rng_normal(&rng);
-            grains.radius[i] = 0.4;
-            grains.mass[i] = 1;
-        }
         struct field field = {0};
         const double cpu = clock_process(), wall = clock_wall();
         map_add(map, &grains);
         done = map_field(map, MAP_temperature, &field, error);
-        result->cpu = clock_process() - cpu;
-        result->wall = clock_wall() - wall;
+        stop(result, cpu, wall);
         result->value = 1e3 * result->cpu;
         field_free(&field);
     }
@@ -117,8 +170,7 @@ static bool measure_png(const struct bench_case *which, struct bench_result *res
     paint_discs(&image);
     const double cpu = clock_process(), wall = clock_wall();
     const bool done = image_encode(&image, 1, NULL, 0, &bytes, &size, error);
-    result->cpu = clock_process() - cpu;
-    result->wall = clock_wall() - wall;
+    stop(result, cpu, wall);
     result->value = 1e3 * result->cpu;
     free(bytes);
     image_free(&image);
@@ -128,15 +180,32 @@ static bool measure_png(const struct bench_case *which, struct bench_result *res
 static bool measure_frame(const struct bench_case *which, struct bench_result *result,
                           struct error *error)
 {
-    const struct bench_draw_case what = {.grains = (uint32_t)which->amount, .width = 1280,
-                                         .height = 720, .path = PAINTER_AUTO, .rims = true};
-    struct bench_draw_result drawn;
-    const double wall = clock_wall();
-    if (!bench_draw(&what, 3, &drawn, error)) return false;
-    result->wall = clock_wall() - wall;
-    result->value = drawn.paint_ms + drawn.encode_ms;
-    result->cpu = 1e-3 * result->value;
-    return true;
+    struct setup setup;
+    const struct setup_request request = {.path = which->name, .text = square_scene};
+    struct grains grains = {0};
+    struct image image = {0};
+    struct painter *painter = NULL;
+    uint8_t *bytes = NULL;
+    size_t size;
+    bool done = setup_load(&setup, &request, error)
+        && scatter(&grains, (uint32_t)which->amount, 1000, error)
+        && image_create(&image, 1280, 720, error)
+        && (painter = painter_create(&setup.scene->view, error));
+    const struct picture picture = {.scene = setup.scene, .grains = &grains,
+        .view = done ? &setup.scene->view : NULL, .range = {0, 3}, .field_range = {NAN, NAN}};
+    /* The first frame also fills the caches of glyphs and shaders. */
+    done = done && painter_frame(painter, &picture, &image, error);
+    const double cpu = clock_process(), wall = clock_wall();
+    done = done && painter_frame(painter, &picture, &image, error)
+        && image_encode(&image, 1, NULL, 0, &bytes, &size, error);
+    stop(result, cpu, wall);
+    result->value = 1e3 * result->cpu;
+    free(bytes);
+    if (painter) painter_destroy(painter);
+    image_free(&image);
+    grains_free(&grains);
+    setup_free(&setup);
+    return done;
 }
 
 static const char gas_scene[] =
@@ -146,9 +215,21 @@ static const char gas_scene[] =
     "placements = ({ kind = \"random\"; count = 20000; temperature = 1.0; });\n";
 
 const struct bench_case bench_list[] = {
+    {"md-bed", "100,000 settled discs, tangential springs, one thread", "particle-steps/cpu-s",
+     true, measure_bed, .amount = 1, .per_grain = true},
+    {"md-bed-2", "the same on two threads, by the wall clock", "particle-steps/s", true,
+     measure_bed, .amount = 2, .per_grain = true},
+    {"md-bed-smooth", "the same discs without friction, one thread", "particle-steps/cpu-s", true,
+     measure_bed, .amount = 1},
     {"md-gas", "20,000 dissipative discs, area fraction 0.2, periodic", "particle-steps/cpu-s",
      true, measure_model, .scene = "md-gas", .text = gas_scene, .model = "md", .amount = 0.05,
      .per_grain = true},
+    {"ed-gas-1e5", "99,856 hard discs, area fraction 0.25, r = 0.8", "ns/collision", false,
+     measure_discs, .scene = "0.25", .set = "0.8", .amount = 99856},
+    {"ed-gas-1e4", "10,000 hard discs, area fraction 0.25, elastic", "ns/collision", false,
+     measure_discs, .scene = "0.25", .set = "1", .amount = 10000},
+    {"ed-dense-1e5", "99,856 hard discs, area fraction 0.70, elastic", "ns/collision", false,
+     measure_discs, .scene = "0.70", .set = "1", .amount = 99856},
     {"lga-hourglass", "the hourglass with 20,000 grains as a lattice gas", "ticks/cpu-s", true,
      measure_model, .scene = "hourglass", .set = "grains.[0].radius=[0.018, 0.027]",
      .model = "lga", .amount = 3},
