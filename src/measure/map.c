@@ -233,8 +233,8 @@ static void total_join(struct total *total, const struct map_cell *cell)
     total->area += cell->area;
 }
 
-/* A smooth kernel reaches cells where there is nothing to tell: two widths from the only grain of a
- * Gauss kernel one cell wide its weight is exp(-2) / (2 pi), and farther out means are left open. */
+/* A smooth kernel reaches cells where there is nothing to tell: two widths from the only grain of
+ * a Gauss kernel one cell wide its weight is exp(-2) / (2 pi); farther out means are left open. */
 static const double weight_least = 0.0215;
 
 static double ratio(double sum, double weight) { return weight > 0 ? sum / weight : NAN; }
