@@ -5,7 +5,8 @@
  * Paper 000 (2.2) refuses a move into a full cell and leaves open what becomes of the grain.  A
  * heap stands if the refused grain tries the vertical part of its way, then the horizontal, else
  * collides with a grain of the full cell; and if it rests once both are slow, unless it can roll
- * down to one side.  A grain at rest is passed over while the cell below it stays full.  Cells are
+ * down to one side.  A grain at rest is passed over while the cell below it stays full and no drop
+ * of two cells opens beside it, as it does where sand runs out.  Cells are
  * two diameters wide and hold four grains, an area fraction of 0.785.
  *
  * The sweep goes through the grains in their order, from a random one on and in a random sense,
@@ -157,17 +158,44 @@ static void refuse(struct sweep *sweep, uint32_t i, uint32_t cell, uint32_t to)
     }
 }
 
-/* Still carried? */
+/* Has a cell beside it room?  Most grains of a heap learn from this that they cannot roll. */
+static bool has_free_side(const struct sweep *sweep, uint32_t cell)
+{
+    const struct dsmc *dsmc = sweep->dsmc;
+    const uint32_t x = cell % sweep->nx;
+    if (x == 0 || x + 1 == sweep->nx) return true;
+    return dsmc->load[cell - 1] < dsmc->full || dsmc->load[cell + 1] < dsmc->full;
+}
+
+/* A grain at rest starts only where the drop beside it is two cells: a slope that stands is steeper
+ * than one on which grains come to rest. */
+static int drop_side(const struct sweep *sweep, uint32_t cell, uint64_t word)
+{
+    const int begin = word & 1 ? 1 : -1;
+    for (int turn = 0; turn < 2; turn++) {
+        const int side = turn == 0 ? begin : -begin;
+        if (!is_full(sweep, cell, side, 0) && !is_full(sweep, cell, side, sweep->down)
+            && !is_full(sweep, cell, side, 2 * sweep->down)) return side;
+    }
+    return 0;
+}
+
+/* Does grain i stay at rest?  Not if what carried it has gone, nor beside a drop. */
 static bool rests(struct sweep *sweep, uint32_t i, uint32_t cell)
 {
     struct dsmc *dsmc = sweep->dsmc;
     const uint32_t tag = dsmc->tags[i];
     if (!(tag & DSMC_RESTS)) return false;
-    const bool carried = tag & DSMC_PLATE
-        ? !dsmc->walls.vary || dsmc_walls_carries(dsmc, &dsmc->grains[i])
-        : lies_on_full(sweep, cell);
-    if (!carried) dsmc->tags[i] = tag & DSMC_NAME;
-    return carried;
+    if (tag & DSMC_PLATE) {
+        if (!dsmc->walls.vary || dsmc_walls_carries(dsmc, &dsmc->grains[i])) return true;
+    } else if (lies_on_full(sweep, cell)) {
+        if (!has_free_side(sweep, cell)) return true;
+        const int side = drop_side(sweep, cell, rng_keyed(sweep->key, i, 1, 0));
+        if (side == 0) return true;
+        dsmc->grains[i].vx = (float)side * sweep->roll;
+    }
+    dsmc->tags[i] = tag & DSMC_NAME;
+    return false;
 }
 
 static void move_grain(struct sweep *sweep, uint32_t i)
