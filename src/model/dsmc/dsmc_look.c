@@ -38,7 +38,7 @@ static void show(const struct dsmc *dsmc, uint32_t i, double x, double y, struct
  * side, from below, unless a wall is in the way. */
 static void lay_out(const struct dsmc *dsmc, uint32_t i, double *x, double *y)
 {
-    if (!dsmc->full || (dsmc->tags[i] & (DSMC_RESTS | DSMC_PLATE)) != DSMC_RESTS) return;
+    if (!dsmc->full || !(dsmc->tags[i] & DSMC_RESTS)) return;
     const uint32_t cell = dsmc_cell(&dsmc->ax, &dsmc->ay, dsmc->grains[i].x, dsmc->grains[i].y);
     const uint32_t side = (uint32_t)ceil(sqrt((double)dsmc->full)), rank = i - dsmc->first[cell];
     const bool falls_up = dsmc->scene->gravity[1] > 0;
@@ -46,7 +46,7 @@ static void lay_out(const struct dsmc *dsmc, uint32_t i, double *x, double *y)
     const double column = (rank % side + 0.5) / side, row = (rank / side + 0.5) / side;
     const double to_x = (cell % dsmc->ax.cells + column) / (double)dsmc->ax.per;
     const double to_y = (cell / dsmc->ax.cells + (falls_up ? 1 - row : row)) / (double)dsmc->ay.per;
-    if (dsmc->walls.first && !dsmc_walls_clear(dsmc, to_x, to_y)) return;
+    if (dsmc->walls.first && !dsmc_walls_clear(dsmc, &dsmc->grains[i], to_x, to_y)) return;
     *x = dsmc->scene->box[0] + to_x;
     *y = dsmc->scene->box[1] + to_y;
 }
