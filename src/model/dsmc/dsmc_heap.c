@@ -180,12 +180,11 @@ static int drop_side(const struct sweep *sweep, uint32_t cell, uint64_t word)
     return 0;
 }
 
-/* Does grain i stay at rest?  Not if what carried it has gone, nor beside a drop. */
+/* Does grain i, which is at rest, stay so?  Not if what carried it has gone, nor beside a drop. */
 static bool rests(struct sweep *sweep, uint32_t i, uint32_t cell)
 {
     struct dsmc *dsmc = sweep->dsmc;
     const uint32_t tag = dsmc->tags[i];
-    if (!(tag & DSMC_RESTS)) return false;
     if (tag & DSMC_PLATE) {
         if (!dsmc->walls.vary || dsmc_walls_carries(dsmc, &dsmc->grains[i])) return true;
     } else if (lies_on_full(sweep, cell)) {
@@ -198,17 +197,19 @@ static bool rests(struct sweep *sweep, uint32_t i, uint32_t cell)
     return false;
 }
 
-static void move_grain(struct sweep *sweep, uint32_t i)
+/* Moves grain i, which was in `cell` before. */
+static void move_grain(struct sweep *sweep, uint32_t i, uint32_t cell)
 {
     struct dsmc *dsmc = sweep->dsmc;
     struct dsmc_grain *p = &dsmc->grains[i];
-    const uint32_t cell = cell_at(dsmc, p->x, p->y);
-    if (rests(sweep, i, cell)) return;
+    if (dsmc->tags[i] & DSMC_RESTS && rests(sweep, i, cell)) return;
     const struct dsmc_grain before = *p;
-    const float speed = sqrtf(p->vx * p->vx + p->vy * p->vy);
-    const float time = speed * sweep->dt > sweep->way_max ? sweep->way_max / speed : sweep->dt;
+    const float speed2 = p->vx * p->vx + p->vy * p->vy, most2 = sweep->way_max * sweep->way_max;
+    const bool fast = speed2 * sweep->dt * sweep->dt > most2;
+    const float time = fast ? sweep->way_max / sqrtf(speed2) : sweep->dt;
     bool plate = false;
-    if (dsmc->walls.first && (dsmc_walls_near(dsmc, p->x, p->y) || speed * time > dsmc->walls.stride)) {
+    if (dsmc->walls.first && (dsmc_walls_near(dsmc, p->x, p->y)
+                              || speed2 * time * time > dsmc->walls.stride * dsmc->walls.stride)) {
         plate = dsmc_walls_fly(dsmc, i, time, 0);
     } else {
         p->x += time * (p->vx + 0.5f * time * sweep->gx);
@@ -264,8 +265,12 @@ void dsmc_heap_sweep(struct dsmc *dsmc)
     uint32_t i = (uint32_t)(rng_uniform(&rng) * n);
     const bool upwards = rng_u64(&rng) & 1;
     sweep.key = rng.state;
+    uint32_t cell = cell_at(dsmc, dsmc->grains[i].x, dsmc->grains[i].y);
     for (uint32_t k = 0; k < n; k++) {
-        move_grain(&sweep, i);
+        /* Grains lie cell by cell, so the next one's cell is this one or soon after. */
+        while (i < dsmc->first[cell]) cell--;
+        while (i >= dsmc->first[cell + 1]) cell++;
+        move_grain(&sweep, i, cell);
         if (upwards) i = i + 1 == n ? 0 : i + 1;
         else i = i == 0 ? n - 1 : i - 1;
     }
