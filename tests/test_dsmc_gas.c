@@ -21,8 +21,8 @@ static struct scenes_run *begin_gas(double side, double restitution, const char 
 {
     char text[1500];
     snprintf(text, sizeof text,
-        "until = 1e6; seed = 3; box = [0.0, 0.0, %g, %g]; left = \"periodic\"; right = \"periodic\";"
-        "bottom = \"periodic\"; top = \"periodic\";"
+        "until = 1e6; seed = 3; box = [0.0, 0.0, %g, %g];"
+        "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";"
         "grains = ({ radius = 0.5; density = 1.2732395447351628; restitution = %g; });"
         "placements = ({ kind = \"random\"; fraction = 0.25; temperature = 1.0; });"
         "dsmc = { %s };", side, side, restitution, settings);
@@ -48,7 +48,7 @@ static void test_elastic_grains_collide_at_enskogs_rate(void **unused)
     /* 150,000 collisions: 0.26 % by chance, so 1 % is four deviations. */
     CHECK_NEAR(relative_rate("method = \"plain\";"), 1, 0.01);
     CHECK_NEAR(relative_rate("method = \"dense\";"), 1, 0.015);
-    /* The free volume that the papers print gives chi = 1 / (1 - nu / 0.82) = 1.4386, not 1.5833. */
+    /* The free volume of the papers gives chi = 1 / (1 - nu / 0.82) = 1.4386, not 1.5833. */
     CHECK_NEAR(relative_rate("method = \"plain\"; chi = \"free-volume\";"), 1.4386 / 1.5833, 0.01);
     /* Four particles for a disc meet as often as one. */
     CHECK_NEAR(relative_rate("method = \"plain\"; weight = 4;"), 1, 0.01);
@@ -67,7 +67,8 @@ static void test_the_acceptance_as_printed_would_collide_far_too_often(void **un
 static void test_elastic_collisions_keep_energy_and_momentum_to_rounding(void **unused)
 {
     (void)unused;
-    const char *const settings[] = {"method = \"plain\";", "method = \"dense\";", "method = \"hsmc\";"};
+    const char *const settings[] = {"method = \"plain\";", "method = \"dense\";",
+                                    "method = \"hsmc\";"};
     for (int k = 0; k < 3; k++) {
         struct scenes_run *run = begin_gas(100.0, 1, settings[k]);
         const struct counters before = simulation_count(&run->sim);
@@ -143,7 +144,8 @@ static void test_a_wall_feels_the_pressure_of_the_gas(void **unused)
 {
     (void)unused;
     struct scenes_run *run = scenes_begin(
-        "until = 1e6; seed = 5; box = [0.0, 0.0, 60.0, 50.0]; bottom = \"periodic\"; top = \"periodic\";"
+        "until = 1e6; seed = 5; box = [0.0, 0.0, 60.0, 50.0];"
+        "bottom = \"periodic\"; top = \"periodic\";"
         "grains = ({ radius = 0.5; density = 1.2732395447351628; restitution = 1.0; });"
         "placements = ({ kind = \"random\"; region = [10.0, 0.0, 60.0, 50.0]; fraction = 0.05;"
         "                temperature = 1.0; });"
@@ -154,7 +156,7 @@ static void test_a_wall_feels_the_pressure_of_the_gas(void **unused)
     scenes_advance(run, 110);
     const struct tally_body after = simulation_tally(&run->sim)->bodies[0];
     struct grains grains = scenes_look(run);
-    for (uint32_t i = 0; i < grains.count; i++) CHECK(grains.x[i] > 10.49);     /* none gets through */
+    for (uint32_t i = 0; i < grains.count; i++) CHECK(grains.x[i] > 10.49); /* all on one side */
     /* Points press with n T; their centres have 49 x 50.  About 4500 hits in all, so 2 % by chance
      * (the spread of 2 v at a wall is about its mean). */
     const double pressure = grains.count / (49.0 * 50.0);
@@ -215,7 +217,8 @@ static void test_rough_elastic_grains_share_energy_with_their_spins(void **unuse
 {
     (void)unused;
     struct scenes_run *run = scenes_begin(
-        "until = 1e6; seed = 3; box = [0.0, 0.0, 60.0, 60.0]; left = \"periodic\"; right = \"periodic\";"
+        "until = 1e6; seed = 3; box = [0.0, 0.0, 60.0, 60.0];"
+        "left = \"periodic\"; right = \"periodic\";"
         "bottom = \"periodic\"; top = \"periodic\";"
         "grains = ({ radius = 0.5; restitution = 1.0; friction = 100.0; });"
         "placements = ({ kind = \"random\"; fraction = 0.25; temperature = 1.0; });"
@@ -247,7 +250,8 @@ static uint64_t digest_with(int threads, const char *settings)
 static void test_the_bytes_do_not_depend_on_the_number_of_threads(void **unused)
 {
     (void)unused;
-    const char *const settings[] = {"method = \"plain\";", "method = \"dense\";", "method = \"hsmc\";"};
+    const char *const settings[] = {"method = \"plain\";", "method = \"dense\";",
+                                    "method = \"hsmc\";"};
     for (int k = 0; k < 3; k++) {                               /* 8149 grains: enough to share */
         const uint64_t one = digest_with(1, settings[k]);
         CHECK(digest_with(2, settings[k]) == one);

@@ -111,7 +111,8 @@ static void set_up(struct dsmc *dsmc, const struct scene *scene)
     dsmc->dt = dsmc->settings.dt;
     dsmc->radius = scene->radius_mean;
     dsmc->threads = (uint32_t)omp_get_max_threads();
-    dsmc->window_length = isfinite(scene->measure.collision_window) ? scene->measure.collision_window
+    const double window = scene->measure.collision_window;
+    dsmc->window_length = isfinite(window) ? window
                         : scene->output.frames > 0 ? scene->output.frames : 100 * dsmc->dt;
     dsmc->count_max = (uint32_t)fmin(capacity(scene) * dsmc->settings.weight, DSMC_NAME);
     choose_grid(dsmc);
@@ -214,7 +215,8 @@ static uint64_t dsmc_memory(const struct scene *scene)
     const double cells = width / s.cell * (height / s.cell);
     const size_t grain = 2 * sizeof(struct dsmc_grain) + sizeof(uint32_t)
                        + (scene->effects & EFFECT_ROTATION ? sizeof(float) : 0)
-                       + (scene->effects & EFFECT_COLLISION_RATE ? sizeof(struct dsmc_contacts) : 0);
+                       + (scene->effects & EFFECT_COLLISION_RATE ? sizeof(struct dsmc_contacts)
+                                                                 : 0);
     const double cell = sizeof(uint32_t) * (1 + (double)omp_get_max_threads())
                       + (s.method == DSMC_HSMC ? sizeof(uint16_t) : 0);
     return (uint64_t)((double)grain * fmin(capacity(scene) * s.weight, DSMC_NAME) + cell * cells);

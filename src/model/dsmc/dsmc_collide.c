@@ -68,7 +68,7 @@ static bool neighbour(const struct dsmc_axis *axis, uint32_t k, int step, uint32
     return true;
 }
 
-/* Adds the cells of one row, whose height is `height`; column 0 is `reach` cells before the block. */
+/* Adds the cells of one row of that height; column 0 is `reach` cells before the block. */
 FORCE_INLINE void add_row(const struct block *block, uint32_t y, float height, struct hood *sum)
 {
     const struct dsmc_axis *ax = &block->dsmc->ax;
@@ -142,7 +142,8 @@ FORCE_INLINE void find_local_factors(struct block *block)
     if (dsmc->ax.wraps) return;
     if (block->x0 == 0) block->factor[0] /= volume(&dsmc->ax, 0);
     const uint32_t last = dsmc->ax.cells - 1;
-    if (block->x1 == last + 1 && last > 0) block->factor[last - block->x0] /= volume(&dsmc->ax, last);
+    if (block->x1 != last + 1 || last == 0) return;
+    block->factor[last - block->x0] /= volume(&dsmc->ax, last);
 }
 
 /* Without neighbours: the whole box is as crowded on average. */
@@ -369,7 +370,8 @@ FORCE_INLINE void collide_block(struct block *block, unsigned flags)
 /* X(flags): the loops that exist */
 #define LOOPS(X) X(0) X(1) X(3) X(4) X(5) X(7)
 
-#define X(flags) CLONES static void loop_##flags(struct block *block) { collide_block(block, flags); }
+#define X(flags) \
+    CLONES static void loop_##flags(struct block *block) { collide_block(block, flags); }
 LOOPS(X)
 #undef X
 
@@ -398,8 +400,8 @@ uint32_t dsmc_collide_cell(const struct dsmc *dsmc, uint32_t block)
 void dsmc_collide(struct dsmc *dsmc, uint32_t number, struct dsmc_sums *sums)
 {
     const int method = dsmc->settings.method;
-    const unsigned flags = (method == DSMC_PLAIN ? 0 : LOCAL) | (method == DSMC_DENSE ? DISPLACE : 0)
-                         | (dsmc->spins ? ROUGH : 0);
+    const unsigned flags = (method == DSMC_PLAIN ? 0 : LOCAL)
+                         | (method == DSMC_DENSE ? DISPLACE : 0) | (dsmc->spins ? ROUGH : 0);
     struct block block;
     block.dsmc = dsmc;
     block.number = number;

@@ -239,7 +239,8 @@ CLONES static void fly_free(struct dsmc *dsmc, const struct flight *f, struct ru
 }
 
 /* X(name, walls, shear): the loops that exist beside */
-#define LOOPS(X) X(open, false, false) X(walls, true, false) X(shear, false, true) X(both, true, true)
+#define LOOPS(X)                                                                                \
+    X(open, false, false) X(walls, true, false) X(shear, false, true) X(both, true, true)
 
 #define X(name, walls, shear)                                                                   \
     CLONES static void fly_##name(struct dsmc *dsmc, const struct flight *f, struct run run,    \
@@ -422,7 +423,8 @@ static void do_alone(struct dsmc *dsmc)
 static void do_share(struct dsmc *dsmc, const struct flight *flight, uint32_t *starts)
 {
     const uint32_t t = (uint32_t)omp_get_thread_num(), team = (uint32_t)omp_get_num_threads();
-    const bool waits = dsmc->full || dsmc->effects & (EFFECT_OUTFLOW | EFFECT_SCREEN | EFFECT_INFLOW);
+    const effects_t flows = EFFECT_OUTFLOW | EFFECT_SCREEN | EFFECT_INFLOW;
+    const bool waits = dsmc->full || dsmc->effects & flows;
     const uint32_t from = share_block(dsmc, t, team), to = share_block(dsmc, t + 1, team);
     uint32_t *places = dsmc->places + (size_t)t * dsmc->cells;
     uint32_t first = dsmc->first[dsmc_collide_cell(dsmc, from)];

@@ -94,8 +94,8 @@ static bool is_near(const struct dsmc *dsmc, uint32_t cx, uint32_t cy, const str
     const double wx = 1 / (double)walls->per_x, wy = 1 / (double)walls->per_y;
     const bool border = cx == 0 || cy == 0 || cx + 1 == walls->nx || cy + 1 == walls->ny;
     const double half = 0.5 * hypot(wx, wy) + (border ? 4 * dsmc->radius : 0);
-    const struct wall_nearest nearest = wall_nearest(wall, (cx + 0.5) * wx - ix, (cy + 0.5) * wy - iy);
-    return nearest.distance < half + margin(dsmc);
+    const double x = (cx + 0.5) * wx - ix, y = (cy + 0.5) * wy - iy;
+    return wall_nearest(wall, x, y).distance < half + margin(dsmc);
 }
 
 /* Cells from..to - 1 of one direction that lie within the bounds; false if none does. */
@@ -266,7 +266,8 @@ static double leave_walls(struct flyer *flyer, bool bounces)
         for (uint32_t k = walls->first[cell]; k < walls->first[cell + 1]; k++) {
             const uint32_t w = walls->near[k] / IMAGES;
             if (!walls->here[w]) continue;
-            const struct wall_nearest nearest = nearest_of(dsmc, walls->near[k], flyer->x, flyer->y);
+            const uint32_t entry = walls->near[k];
+            const struct wall_nearest nearest = nearest_of(dsmc, entry, flyer->x, flyer->y);
             const double overlap = dsmc->radius - nearest.distance;
             room = fmin(room, fmax(0, -overlap));
             if (!(overlap > 0)) continue;
