@@ -76,7 +76,8 @@ struct ed_settings ed_settings_of(const struct scene *scene)
 {
     const struct ed_settings *given = scene_settings(scene, ed_settings_group.name);
     struct ed_settings settings = {
-        .t_c = NAN, .restitution = NAN, .wall_restitution = NAN, .wall_friction = NAN, .wall_tangential = NAN,
+        .t_c = NAN, .restitution = NAN, .wall_restitution = NAN, .wall_friction = NAN,
+        .wall_tangential = NAN,
         .reference_speed = 1, .cell = NAN, .margin = 1
     };
     if (given) settings = *given;
