@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/rng.h"
+#include "bench/bench_ed.h"
 #include "bench/bench_md.h"
 #include "draw/painter.h"
 #include "measure/map.h"
@@ -73,6 +74,24 @@ static bool measure_bed(const struct bench_case *which, struct bench_result *res
     stop(result, cpu, wall);
     const int threads = (int)which->amount;
     result->value = threads == 1 ? measured.per_core[1] : measured.particle_steps[threads];
+    return true;
+}
+
+/* Hard discs in a periodic box (bench_ed.h).  `amount` is the number of grains, `scene` the area
+ * fraction, `set` the restitution. */
+static bool measure_discs(const struct bench_case *which, struct bench_result *result,
+                          struct error *error)
+{
+    const bool large = which->amount > 50000;
+    const struct bench_ed_case gas = {.side = (uint32_t)sqrt(which->amount),
+        .fraction = strtod(which->scene, NULL), .restitution = strtod(which->set, NULL),
+        .settle = 10, .collisions = large ? 20 : 80};
+    struct bench_ed_result measured;
+    const double wall = clock_wall();
+    if (!bench_ed(&gas, &measured, error)) return false;
+    result->wall = clock_wall() - wall;
+    result->value = measured.ns;
+    result->cpu = 1e-9 * measured.ns * (double)measured.collisions;
     return true;
 }
 
@@ -205,6 +224,12 @@ const struct bench_case bench_list[] = {
     {"md-gas", "20,000 dissipative discs, area fraction 0.2, periodic", "particle-steps/cpu-s",
      true, measure_model, .scene = "md-gas", .text = gas_scene, .model = "md", .amount = 0.05,
      .per_grain = true},
+    {"ed-gas-1e5", "99,856 hard discs, area fraction 0.25, r = 0.8", "ns/collision", false,
+     measure_discs, .scene = "0.25", .set = "0.8", .amount = 99856},
+    {"ed-gas-1e4", "10,000 hard discs, area fraction 0.25, elastic", "ns/collision", false,
+     measure_discs, .scene = "0.25", .set = "1", .amount = 10000},
+    {"ed-dense-1e5", "99,856 hard discs, area fraction 0.70, elastic", "ns/collision", false,
+     measure_discs, .scene = "0.70", .set = "1", .amount = 99856},
     {"lga-hourglass", "the hourglass with 20,000 grains as a lattice gas", "ticks/cpu-s", true,
      measure_model, .scene = "hourglass", .set = "grains.[0].radius=[0.018, 0.027]",
      .model = "lga", .amount = 3},

@@ -88,7 +88,8 @@ static bool print_peak(FILE *stream, const struct scatter *scatter, struct error
     struct scatter folded;
     if (!scatter_fold(scatter, &folded, error)) return false;
     const struct scatter_peak peak = scatter_peak(&folded, reach);
-    fprintf(stream, "# mass at both sides together is largest at %.1f +- %.1f degrees\n", peak.angle,
+    fprintf(stream, "# mass at both sides together is largest at %.1f +- %.1f degrees\n",
+            peak.angle,
             peak.angle_error);
     scatter_free(&folded);
     return true;

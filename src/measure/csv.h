@@ -22,7 +22,7 @@ bool csv_save_field(const char *path, const struct field *field, const struct sc
 bool csv_save_grains(const char *path, const struct grains *grains, const struct scene *scene,
                      struct error *error);
 
-/* angle,count,mass,mass_error,momentum,spin of what crossed a screen, as scatter.h explains; a third
+/* angle,count,mass,mass_error,momentum,spin of what crossed a screen, as scatter.h says; a third
  * line says at which angle the mass, of both sides together, is largest. */
 bool csv_save_scatter(const char *path, const struct scatter *scatter, const struct scene *scene,
                       struct error *error);

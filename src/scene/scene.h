@@ -140,6 +140,7 @@ struct measure {
     int    kernel;              /* enum kernel */
     double width;               /* kernel length; NAN: one cell */
     double average[2];          /* maps are averaged from, to; NANs: snapshots */
+    double range[2];            /* of the colours of maps; NANs: each map its own */
     bool   collisions;          /* count contacts for each grain */
     double collision_window;    /* over which a rate is formed; NAN: the frame interval */
 };
