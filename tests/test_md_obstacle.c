@@ -68,11 +68,11 @@ static double rows_wanted = 500;
 static void test_the_force_on_the_obstacle_is_that_of_the_reference(void **unused)
 {
     (void)unused;
-    /* Tolerances: twice the spread of the reference (1 %) and of one run of 500 rows (1 %). */
+    /* The reference and one run of 500 rows are known to 1 % each: three times both together. */
     const struct outcome one = measure(1, 1, false, rows_wanted);
-    CHECK_NEAR(one.force, 130.9e3, 4e3);
+    CHECK_NEAR(one.force, 130.9e3, 5e3);
     const struct outcome wide = measure(1.5, 1, false, rows_wanted);
-    CHECK_NEAR(wide.force, 182.9e3, 5e3);
+    CHECK_NEAR(wide.force, 182.9e3, 6e3);
     /* The reference is known to 1.5 degrees, the top of a broad maximum here to about 1. */
     CHECK_NEAR(wide.angle, 28.5, 2.5);
     /* F = a + b R_ob through these two gives the paper's slope of 111e3 within a tenth. */
