@@ -65,8 +65,8 @@ static void test_vector_and_plain_loops_give_the_same_bytes(void **unused)
         for (int plain = 0; plain < 2; plain++) {
             char text[600];
             snprintf(text, sizeof text, "until = 10.0; box = [0.0, 0.0, 27.0, 27.0];"
-                "left = \"periodic\"; right = \"periodic\"; %s placements = ({ kind = \"square\"; spacing = 1.5;"
-                "temperature = 1.0; }); ed = { vectors = \"%s\"; };", kinds[k],
+                "left = \"periodic\"; right = \"periodic\"; %s"
+                "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 1.0; }); ed = { vectors = \"%s\"; };", kinds[k],
                 plain ? "none" : "auto");
             struct scenes_run *run = scenes_begin(text, "ed");
             scenes_advance(run, 10);

@@ -47,8 +47,7 @@ struct dsmc_axis {
     float length;               /* of the box, rounded down */
     float per;                  /* 1 / cell */
     float offset;               /* of this step */
-    float high;                 /* greatest u: cells */
-    uint32_t beyond;            /* the cell of that u: the last, or 0 if it wraps */
+    uint32_t beyond;            /* the cell of greater u: the last, or 0 if it wraps */
     float first, last;          /* volume of the border cells, 1 inside */
     bool  wraps;                /* periodic, and not a sheared border */
     bool  periodic;
@@ -127,11 +126,10 @@ static inline double dsmc_time(const struct dsmc *dsmc)
 
 static inline uint32_t dsmc_axis_cell(const struct dsmc_axis *axis, float x)
 {
-    float u = x * axis->per + axis->offset;
-    u = u > 0 ? u : 0;                                          /* not a number: 0 */
-    u = u < axis->high ? u : axis->high;
-    const uint32_t k = (uint32_t)(int32_t)u;
-    return k < axis->cells ? k : axis->beyond;
+    const float u = x * axis->per + axis->offset;
+    const float most = 1e9f;                                    /* still a whole number */
+    const int32_t k = u > -most ? (int32_t)(u < most ? u : most) : 0;   /* not a number: 0 */
+    return k < 0 ? 0 : k < (int32_t)axis->cells ? (uint32_t)k : axis->beyond;
 }
 
 static inline uint32_t dsmc_cell(const struct dsmc_axis *ax, const struct dsmc_axis *ay, float x,

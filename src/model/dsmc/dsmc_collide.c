@@ -124,54 +124,72 @@ static void find_global_factors(struct block *block)
 
 /* ---- how many candidates -------------------------------------------------------------------- */
 
-typedef float vector4 __attribute__((vector_size(16)));
+typedef float vector4 __attribute__((vector_size(16), may_alias));
 
-/* 2 sum |v_k - mean|^2; velocities count from the first grain's, so that a fast stream does not
- * cost digits. */
-FORCE_INLINE float speed_bound2(const struct dsmc_grain *grains, uint32_t n)
+/* n sum |v_k|^2 - |sum v_k|^2 = n sum |v_k - mean|^2; velocities count from the first grain's, so
+ * that a fast stream does not cost digits.  Two sums at a time, because each addition waits for
+ * the one before. */
+FORCE_INLINE float spread_of(const struct dsmc_grain *grains, uint32_t n)
 {
     const vector4 *records = (const vector4 *)(const void *)grains;
     const vector4 origin = records[0];
-    vector4 sum = {0}, squares = {0};
-    for (uint32_t k = 1; k < n; k++) {
+    vector4 sum = {0}, sum2 = {0}, squares = {0}, squares2 = {0};
+    uint32_t k = 1;
+    for (; k + 1 < n; k += 2) {
+        const vector4 v = records[k] - origin, w = records[k + 1] - origin;
+        sum += v;
+        sum2 += w;
+        squares += v * v;
+        squares2 += w * w;
+    }
+    if (k < n) {
         const vector4 v = records[k] - origin;
         sum += v;
         squares += v * v;
     }
-    const float bound2 = 2 * (squares[2] + squares[3]
-                              - (sum[2] * sum[2] + sum[3] * sum[3]) / (float)n);
-    return bound2 > 0 ? bound2 * 1.00001f : 0;
+    sum += sum2;
+    squares += squares2;
+    return (float)n * (squares[2] + squares[3]) - (sum[2] * sum[2] + sum[3] * sum[3]);
 }
 
-/* The bound of each cell; false if nothing moves against anything here. */
-FORCE_INLINE bool find_bounds(struct block *block)
+/* The bound of each cell, still times n / 2; false if nothing moves against anything here. */
+FORCE_INLINE bool find_spreads(struct block *block)
 {
     const struct dsmc *dsmc = block->dsmc;
-    const uint32_t *first = &dsmc->first[block->cell];
-    bool any = false;
-    for (uint32_t k = 0; k < block->x1 - block->x0; k++) {
+    const uint32_t *first = &dsmc->first[block->cell], count = block->x1 - block->x0;
+    const struct dsmc_grain *grains = dsmc->grains;
+    float most = 0;
+    for (uint32_t k = 0; k < count; k++) {
         const uint32_t n = first[k + 1] - first[k];
-        block->bound2[k] = n < 2 ? 0 : speed_bound2(&dsmc->grains[first[k]], n);
-        if (__builtin_expect(printed_speed > 0, 0)) block->bound2[k] = printed_speed * printed_speed;
-        any = any || block->bound2[k] > 0;
+        const float spread = n < 2 ? 0 : spread_of(&grains[first[k]], n);
+        block->bound2[k] = spread;
+        most = spread > most ? spread : most;
     }
-    return any;
+    return most > 0;
 }
 
+/* The square of the bound and the number of candidates; no branches, several cells at a time. */
 FORCE_INLINE void find_pairs(struct block *block)
 {
     const struct dsmc *dsmc = block->dsmc;
     const uint32_t count = block->x1 - block->x0, *first = &dsmc->first[block->cell];
+    const float rate = dsmc->rate, printed2 = printed_speed * printed_speed;
     uint32_t chance[DSMC_BLOCK];
+    float *bound2 = block->bound2;
+    const float *factor = block->factor;
+    uint32_t *pairs = block->pairs;
     dsmc_words_fill(&block->words, chance, count);
     for (uint32_t k = 0; k < count; k++) {
-        const uint32_t n = first[k + 1] - first[k];
-        block->pairs[k] = 0;
-        if (n < 2) continue;
-        const float all = (float)n * (float)(n - 1);
-        const float mean = dsmc->rate * all * block->factor[k] * sqrtf(block->bound2[k]);
-        const float most = (float)PER_GRAIN_MAX * (float)n;
-        block->pairs[k] = (uint32_t)((mean < most ? mean : most) + dsmc_words_unit(chance[k]));
+        const float n = (float)(int32_t)(first[k + 1] - first[k]);
+        const float spread = bound2[k] > 0 ? bound2[k] : 0;
+        const float own = 2.00002f * spread / (n > 1 ? n : 1);
+        const float bound = printed2 > 0 ? printed2 : own;
+        const float mean = rate * factor[k] * n * (n - 1) * sqrtf(bound);
+        const float most = (float)PER_GRAIN_MAX * n;
+        const float u = (float)(int32_t)(chance[k] >> 8) * 0x1p-24f;
+        const float wanted = (mean < most ? mean : most) + u;
+        bound2[k] = bound;
+        pairs[k] = (uint32_t)(int32_t)(n > 1 ? wanted : 0);
     }
 }
 
@@ -303,7 +321,7 @@ FORCE_INLINE void collide_cells(struct block *block, unsigned flags)
 
 FORCE_INLINE void collide_block(struct block *block, unsigned flags)
 {
-    if (!find_bounds(block)) return;
+    if (!find_spreads(block)) return;
     if (flags & LOCAL) find_local_factors(block);
     else find_global_factors(block);
     block->words = dsmc_words_begin(block->dsmc->seed, block->dsmc->steps, block->number);

@@ -28,8 +28,13 @@ enum {
 
 static const uint64_t shift_key = 0x7368696674;         /* "shift": apart from other streams */
 
-typedef float vector4 __attribute__((vector_size(16)));
+typedef float vector4 __attribute__((vector_size(16), may_alias));
 typedef int32_t mask4 __attribute__((vector_size(16)));
+
+/* Two records side by side: one register where the processor has wide ones. */
+typedef float vector8 __attribute__((vector_size(32), aligned(16), may_alias));
+typedef int32_t mask8 __attribute__((vector_size(32)));
+typedef uint64_t words4 __attribute__((vector_size(32)));
 
 /* ---- the grid ------------------------------------------------------------------------------- */
 
@@ -38,7 +43,6 @@ typedef int32_t mask4 __attribute__((vector_size(16)));
 static struct dsmc_axis shifted(struct dsmc_axis axis, float shift)
 {
     axis.offset = axis.wraps ? 0.5f - shift : -shift;
-    axis.high = (float)axis.cells;
     axis.beyond = axis.wraps ? 0 : axis.cells - 1;
     axis.first = axis.last = 1;
     if (axis.wraps || axis.cells == 1) return axis;
@@ -60,7 +64,58 @@ static void lay_grid(struct dsmc *dsmc, uint64_t step)
     dsmc->next_ay = shifted(dsmc->ay, sy);
 }
 
+/* The next grid as the loops want it: both directions of two grains at once. */
+struct finder {
+    vector8 per, offset;
+    mask8   cells, beyond;
+    uint32_t columns;
+};
+
+static struct finder finder_of(const struct dsmc *dsmc)
+{
+    const struct dsmc_axis *ax = &dsmc->next_ax, *ay = &dsmc->next_ay;
+    const int32_t nx = (int32_t)ax->cells, ny = (int32_t)ay->cells;
+    const int32_t bx = (int32_t)ax->beyond, by = (int32_t)ay->beyond;
+    return (struct finder){
+        .per = {ax->per, ay->per, 0, 0, ax->per, ay->per, 0, 0},
+        .offset = {ax->offset, ay->offset, 0, 0, ax->offset, ay->offset, 0, 0},
+        .cells = {nx, ny, 1, 1, nx, ny, 1, 1}, .beyond = {bx, by, 0, 0, bx, by, 0, 0},
+        .columns = ax->cells,
+    };
+}
+
+/* The cells of two grains, as dsmc_cell() gives them.  What is no number, or too large for a whole
+ * one, becomes negative and so 0. */
+FORCE_INLINE void find_two(const struct finder *f, const vector8 *p, uint32_t cell[2])
+{
+    mask8 k = __builtin_convertvector(*p * f->per + f->offset, mask8);
+    const mask8 inside = k < f->cells;
+    k = (k & inside) | (f->beyond & ~inside);
+    k &= ~(k >> 31);
+    const words4 words = (words4)k;                             /* x below, y above */
+    cell[0] = (uint32_t)(words[0] >> 32) * f->columns + (uint32_t)words[0];
+    cell[1] = (uint32_t)(words[2] >> 32) * f->columns + (uint32_t)words[2];
+}
+
+/* Not a function: how such a register is returned differs between processors. */
+#define TWICE(p) ((vector8){(p)[0], (p)[1], (p)[2], (p)[3], (p)[0], (p)[1], (p)[2], (p)[3]})
+
+FORCE_INLINE uint32_t find_one(const struct finder *f, vector4 p)
+{
+    const vector8 both = TWICE(p);
+    uint32_t cell[2];
+    find_two(f, &both, cell);
+    return cell[0];
+}
+
+FORCE_INLINE vector4 chosen(vector4 a, vector4 b, mask4 which)
+{
+    return (vector4)(((mask4)a & which) | ((mask4)b & ~which));
+}
+
 /* ---- flight --------------------------------------------------------------------------------- */
+
+struct run { uint32_t first, last, block; };    /* grains first .. last - 1 of a block of cells */
 
 /* Free flight of one step for records (x y vx vy). */
 struct flight {
@@ -102,11 +157,6 @@ static struct flight flight_of(const struct dsmc *dsmc)
     return f;
 }
 
-FORCE_INLINE vector4 chosen(vector4 a, vector4 b, mask4 which)
-{
-    return (vector4)(((mask4)a & which) | ((mask4)b & ~which));
-}
-
 FORCE_INLINE vector4 brought_back(const struct flight *f, vector4 p)
 {
     p += (vector4)((mask4)f->by & (p < f->below));
@@ -126,59 +176,105 @@ FORCE_INLINE vector4 sheared(const struct flight *f, vector4 p)
     return p;
 }
 
-FORCE_INLINE void fly(struct dsmc *dsmc, const struct flight *flight, uint32_t first, uint32_t last,
-                      uint32_t block, bool walls, bool shear)
+/* Moves the grains of a block and counts them into their new cells. */
+FORCE_INLINE void fly(struct dsmc *dsmc, const struct flight *flight, struct run run,
+                      uint32_t *restrict places, bool walls, bool shear)
 {
-    vector4 *grains = (vector4 *)(void *)dsmc->grains;
+    vector4 *restrict grains = (vector4 *)(void *)dsmc->grains;
     const struct flight f = *flight;
-    for (uint32_t i = first; i < last; i++) {
+    const struct finder finder = finder_of(dsmc);
+    for (uint32_t i = run.first; i < run.last; i++) {
         vector4 p = grains[i];
         const vector4 v = {p[2], p[3], p[2], p[3]};
         const vector4 way = v * f.time + f.fall;
         const bool far = walls && !(way[0] * way[0] + way[1] * way[1] <= f.stride2);
         if (walls && (far || dsmc_walls_near(dsmc, p[0], p[1]))) {
-            dsmc_walls_fly(dsmc, i, f.time[0], block);
+            dsmc_walls_fly(dsmc, i, f.time[0], run.block);
             p = grains[i];
         } else {
             p += way;
         }
         if (shear) p = sheared(&f, p);
-        grains[i] = brought_back(&f, p);
+        p = brought_back(&f, p);
+        grains[i] = p;
+        places[find_one(&finder, p)]++;
     }
 }
 
-/* X(name, walls, shear): the loops that exist */
-#define LOOPS(X) X(free, false, false) X(walls, true, false) X(shear, false, true) X(both, true, true)
+/* The same where nothing is in the way: no walls, no open or sheared borders. */
+FORCE_INLINE void fly_freely(struct dsmc *dsmc, const struct flight *f, struct run run,
+                             uint32_t *restrict places)
+{
+    struct dsmc_grain *restrict grains = dsmc->grains;
+    const struct finder finder = finder_of(dsmc);
+    const vector8 time = TWICE(f->time), fall = TWICE(f->fall), by = TWICE(f->by);
+    const vector8 below = TWICE(f->below), above = TWICE(f->above);
+    uint32_t cell[2];
+    uint32_t i = run.first;
+    for (; i + 1 < run.last; i += 2) {
+        vector8 *at = (vector8 *)(void *)&grains[i];
+        vector8 p = *at;
+        const vector8 v = {p[2], p[3], p[2], p[3], p[6], p[7], p[6], p[7]};
+        p += v * time + fall;
+        const vector8 up = (vector8)((mask8)by & (p < below));
+        const vector8 down = (vector8)((mask8)by & (p >= above));
+        p = p + up - down;
+        *at = p;
+        find_two(&finder, &p, cell);
+        places[cell[0]]++;
+        places[cell[1]]++;
+    }
+    if (i == run.last) return;
+    vector4 *at = (vector4 *)(void *)&grains[i];
+    const vector4 v = {(*at)[2], (*at)[3], (*at)[2], (*at)[3]};
+    const vector4 p = brought_back(f, *at + (v * f->time + f->fall));
+    *at = p;
+    places[find_one(&finder, p)]++;
+}
+
+CLONES static void fly_free(struct dsmc *dsmc, const struct flight *f, struct run run,
+                            uint32_t *places)
+{
+    fly_freely(dsmc, f, run, places);
+}
+
+/* X(name, walls, shear): the loops that exist beside */
+#define LOOPS(X) X(open, false, false) X(walls, true, false) X(shear, false, true) X(both, true, true)
 
 #define X(name, walls, shear)                                                                   \
-    CLONES static void fly_##name(struct dsmc *dsmc, const struct flight *f, uint32_t first,    \
-                                  uint32_t last, uint32_t block)                                \
+    CLONES static void fly_##name(struct dsmc *dsmc, const struct flight *f, struct run run,    \
+                                  uint32_t *places)                                             \
     {                                                                                           \
-        fly(dsmc, f, first, last, block, walls, shear);                                         \
+        fly(dsmc, f, run, places, walls, shear);                                                \
     }
 LOOPS(X)
 #undef X
 
-static void fly_block(struct dsmc *dsmc, const struct flight *f, uint32_t first, uint32_t last,
-                      uint32_t block)
+static void fly_block(struct dsmc *dsmc, const struct flight *f, struct run run, uint32_t *places)
 {
     const bool walls = dsmc->walls.first, shear = f->shear_speed != 0;
-    if (walls) (shear ? fly_both : fly_walls)(dsmc, f, first, last, block);
-    else (shear ? fly_shear : fly_free)(dsmc, f, first, last, block);
+    if (walls) (shear ? fly_both : fly_walls)(dsmc, f, run, places);
+    else if (shear) fly_shear(dsmc, f, run, places);
+    else if (dsmc->ax.periodic && dsmc->ay.periodic) fly_free(dsmc, f, run, places);
+    else fly_open(dsmc, f, run, places);
 }
 
 /* ---- sort ----------------------------------------------------------------------------------- */
 
 /* What travels through the record of a grain that has been copied. */
-struct carry { uint32_t place, tag; float spin; struct dsmc_contacts contacts; };
+struct __attribute__((may_alias)) carry {
+    uint32_t place, tag;
+    float    spin;
+    struct dsmc_contacts contacts;
+};
 _Static_assert(sizeof(struct carry) == sizeof(struct dsmc_grain), "a carry fits a record");
 
-CLONES static void count(const struct dsmc *dsmc, uint32_t *places, uint32_t first, uint32_t last)
+CLONES static void count(const struct dsmc *dsmc, uint32_t *restrict places, uint32_t first,
+                         uint32_t last)
 {
-    const struct dsmc_axis ax = dsmc->next_ax, ay = dsmc->next_ay;
-    for (uint32_t i = first; i < last; i++) {
-        places[dsmc_cell(&ax, &ay, dsmc->grains[i].x, dsmc->grains[i].y)]++;
-    }
+    const struct finder finder = finder_of(dsmc);
+    const vector4 *restrict grains = (const vector4 *)(const void *)dsmc->grains;
+    for (uint32_t i = first; i < last; i++) places[find_one(&finder, grains[i])]++;
 }
 
 /* Turns the threads' counts into places: `first` of the cells of share `t`, in two passes. */
@@ -208,34 +304,48 @@ static void find_places(struct dsmc *dsmc, uint32_t t, uint32_t team, uint32_t *
 #pragma omp barrier
 }
 
-CLONES static void scatter(struct dsmc *dsmc, uint32_t *places, uint32_t first, uint32_t last)
+CLONES static void scatter(const struct dsmc *dsmc, uint32_t *restrict places, uint32_t first,
+                           uint32_t last)
 {
-    const struct dsmc_axis ax = dsmc->next_ax, ay = dsmc->next_ay;
-    struct dsmc_grain *from = dsmc->grains, *to = dsmc->sorted;
+    const struct finder finder = finder_of(dsmc);
+    vector4 *restrict from = (vector4 *)(void *)dsmc->grains;
+    vector4 *restrict to = (vector4 *)(void *)dsmc->sorted;
+    const uint32_t *restrict tags = dsmc->tags;
+    const float *spins = dsmc->spins;
+    const struct dsmc_contacts *contacts = dsmc->contacts;
     uint32_t place[SCATTER];
     for (uint32_t i = first; i < last; i += SCATTER) {
         const uint32_t n = last - i < SCATTER ? last - i : SCATTER;
+        uint32_t m = 0;
+        for (; m + 1 < n; m += 2) find_two(&finder, (vector8 *)(void *)&from[i + m], &place[m]);
+        if (m < n) place[m] = find_one(&finder, from[i + m]);
+        for (uint32_t k = 0; k < n; k++) place[k] = places[place[k]]++;
         for (uint32_t k = 0; k < n; k++) {
-            place[k] = places[dsmc_cell(&ax, &ay, from[i + k].x, from[i + k].y)]++;
+            const vector4 p = from[i + k];
+            struct carry *carry = (struct carry *)(void *)&from[i + k];
+            to[place[k]] = p;
+            carry->place = place[k];
+            carry->tag = tags[i + k];
         }
-        for (uint32_t k = 0; k < n; k++) {
-            to[place[k]] = from[i + k];
-            struct carry carry = {.place = place[k], .tag = dsmc->tags[i + k]};
-            if (dsmc->spins) carry.spin = dsmc->spins[i + k];
-            if (dsmc->contacts) carry.contacts = dsmc->contacts[i + k];
-            memcpy(&from[i + k], &carry, sizeof carry);
+        for (uint32_t k = 0; spins && k < n; k++) {
+            ((struct carry *)(void *)&from[i + k])->spin = spins[i + k];
+        }
+        for (uint32_t k = 0; contacts && k < n; k++) {
+            ((struct carry *)(void *)&from[i + k])->contacts = contacts[i + k];
         }
     }
 }
 
 static void deliver(struct dsmc *dsmc, uint32_t first, uint32_t last)
 {
-    for (uint32_t i = first; i < last; i++) {
-        struct carry carry;
-        memcpy(&carry, &dsmc->grains[i], sizeof carry);
-        dsmc->tags[carry.place] = carry.tag;
-        if (dsmc->spins) dsmc->spins[carry.place] = carry.spin;
-        if (dsmc->contacts) dsmc->contacts[carry.place] = carry.contacts;
+    const struct carry *carries = (const struct carry *)(const void *)dsmc->grains;
+    uint32_t *restrict tags = dsmc->tags;
+    for (uint32_t i = first; i < last; i++) tags[carries[i].place] = carries[i].tag;
+    for (uint32_t i = first; dsmc->spins && i < last; i++) {
+        dsmc->spins[carries[i].place] = carries[i].spin;
+    }
+    for (uint32_t i = first; dsmc->contacts && i < last; i++) {
+        dsmc->contacts[carries[i].place] = carries[i].contacts;
     }
 }
 
@@ -285,7 +395,7 @@ void dsmc_move_sort(struct dsmc *dsmc)
 
 /* ---- a step --------------------------------------------------------------------------------- */
 
-/* Collides, moves and, where nothing comes in or out, counts the grains of some blocks. */
+/* Collides, moves and counts the grains of some blocks. */
 static void do_blocks(struct dsmc *dsmc, const struct flight *flight, uint32_t from, uint32_t to,
                       uint32_t *places, struct dsmc_sums *sums)
 {
@@ -295,8 +405,7 @@ static void do_blocks(struct dsmc *dsmc, const struct flight *flight, uint32_t f
         if (first == last) continue;
         dsmc_collide(dsmc, block, sums);
         if (dsmc->full) continue;
-        fly_block(dsmc, flight, first, last, block);
-        if (places) count(dsmc, places, first, last);
+        fly_block(dsmc, flight, (struct run){first, last, block}, places);
     }
 }
 
@@ -320,14 +429,15 @@ static void do_share(struct dsmc *dsmc, const struct flight *flight, uint32_t *s
     uint32_t last = dsmc->first[dsmc_collide_cell(dsmc, to)];
     struct dsmc_sums sums = {0};
     memset(places, 0, dsmc->cells * sizeof *places);
-    do_blocks(dsmc, flight, from, to, waits ? NULL : places, &sums);
+    do_blocks(dsmc, flight, from, to, places, &sums);
     dsmc->sums[t] = sums;
 #pragma omp barrier
 #pragma omp master
     do_alone(dsmc);
 #pragma omp barrier
     if (dsmc->full && !dsmc->unsorted) return;          /* a heap at rest keeps its order */
-    if (waits) {
+    if (waits) {                                        /* the counts are of other grains */
+        memset(places, 0, dsmc->cells * sizeof *places);
         first = (uint32_t)((uint64_t)dsmc->count * t / team);
         last = (uint32_t)((uint64_t)dsmc->count * (t + 1) / team);
         count(dsmc, places, first, last);
