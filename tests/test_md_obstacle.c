@@ -6,7 +6,8 @@
 #include "scenes.h"
 
 /* R_ob = radius, rho = density; the flat obstacle is a row of touching discs as large as the mean
- * grain, of half length `radius` or up to half a disc more.  The mean is taken over `rows` columns after the corona is there. */
+ * grain, of half length `radius` or up to half a disc more.  The mean is taken over `rows` columns
+ * after the corona is there. */
 struct outcome { double force, angle; };
 
 /* Where the mass, of both sides together, is largest: a parabola over 6 degrees to both sides, as
