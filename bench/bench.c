@@ -214,6 +214,21 @@ static const char gas_scene[] =
     "grains = ({ radius = 0.5; restitution = 0.9; });\n"
     "placements = ({ kind = \"random\"; count = 20000; temperature = 1.0; });\n";
 
+/* Ten points a cell, a mean free path of two cells, 0.27 of a cell a step at the mean speed. */
+#define DSMC_GAS(side, count)                                                                   \
+    "until = 1000.0; box = (0.0, 0.0, " side ", " side ");\n"                                   \
+    "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";\n"    \
+    "grains = ({ radius = 0.008839; restitution = 0.9; });\n"                                   \
+    "placements = ({ kind = \"square\"; spacing = 17.88; jitter = 1.0; count = " count "; "     \
+    "temperature = 1.0; });\n"                                                                  \
+    "dsmc = { method = \"plain\"; cell = 1.0; dt = 0.2154; };\n"
+
+static const char dense_scene[] =
+    "until = 1000.0; box = (0.0, 0.0, 560.0954, 560.0954);\n"
+    "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";\n"
+    "grains = ({ radius = 0.5; restitution = 0.9; });\n"
+    "placements = ({ kind = \"square\"; spacing = 1.77245; count = 99856; temperature = 1.0; });\n";
+
 const struct bench_case bench_list[] = {
     {"md-bed", "100,000 settled discs, tangential springs, one thread", "particle-steps/cpu-s",
      true, measure_bed, .amount = 1, .per_grain = true},
@@ -230,6 +245,18 @@ const struct bench_case bench_list[] = {
      measure_discs, .scene = "0.25", .set = "1", .amount = 10000},
     {"ed-dense-1e5", "99,856 hard discs, area fraction 0.70, elastic", "ns/collision", false,
      measure_discs, .scene = "0.70", .set = "1", .amount = 99856},
+    {"dsmc-gas-1e5", "99,856 points, ten a cell, mean free path two cells", "particle-steps/cpu-s",
+     true, measure_model, .scene = "dsmc-gas", .text = DSMC_GAS("100.0", "99856"),
+     .model = "dsmc", .amount = 43, .per_grain = true},
+    {"dsmc-gas-1e6", "a million of them", "particle-steps/cpu-s", true, measure_model,
+     .scene = "dsmc-gas", .text = DSMC_GAS("316.3", "1000000"), .model = "dsmc", .amount = 10.8,
+     .per_grain = true},
+    {"dsmc-dense", "99,856 discs, area fraction 0.25, dense form", "particle-steps/cpu-s", true,
+     measure_model, .scene = "dsmc-dense", .text = dense_scene, .model = "dsmc", .amount = 3,
+     .per_grain = true},
+    {"dsmc-hsmc", "the same with cells that can be full", "particle-steps/cpu-s", true,
+     measure_model, .scene = "dsmc-dense", .text = dense_scene, .set = "dsmc.method=hsmc",
+     .model = "dsmc", .amount = 3, .per_grain = true},
     {"lga-hourglass", "the hourglass with 20,000 grains as a lattice gas", "ticks/cpu-s", true,
      measure_model, .scene = "hourglass", .set = "grains.[0].radius=[0.018, 0.027]",
      .model = "lga", .amount = 3},

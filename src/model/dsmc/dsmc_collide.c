@@ -18,6 +18,7 @@
 #include "model/dsmc/dsmc_words.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { LOCAL = 1, DISPLACE = 2, ROUGH = 4, KERNELS = 8 };
 
@@ -49,11 +50,13 @@ static float volume(const struct dsmc_axis *axis, uint32_t k)
 
 /* ---- how crowded ---------------------------------------------------------------------------- */
 
-struct hood { float grains, pairs, volume; };   /* of a column of up to five cells */
+enum { WIDTH = DSMC_BLOCK + 2 * DSMC_HOOD };
 
-static uint32_t reach_of(const struct dsmc_axis *axis)
+struct hood { float grains[WIDTH], pairs[WIDTH], volume[WIDTH]; };      /* by column of cells */
+
+static int reach_of(const struct dsmc_axis *axis)
 {
-    return axis->cells >= 2 * DSMC_HOOD + 1 ? DSMC_HOOD : (axis->cells - 1) / 2;
+    return axis->cells >= 2 * DSMC_HOOD + 1 ? DSMC_HOOD : ((int)axis->cells - 1) / 2;
 }
 
 /* The cell `step` beyond k; false if the grid ends before. */
@@ -65,48 +68,81 @@ static bool neighbour(const struct dsmc_axis *axis, uint32_t k, int step, uint32
     return true;
 }
 
-static void add_column(const struct block *block, uint32_t x, struct hood *sum)
+/* Adds the cells of one row, whose height is `height`; column 0 is `reach` cells before the block. */
+FORCE_INLINE void add_row(const struct block *block, uint32_t y, float height, struct hood *sum)
 {
-    const struct dsmc *dsmc = block->dsmc;
-    const int reach = (int)reach_of(&dsmc->ay);
-    for (int step = -reach; step <= reach; step++) {
-        uint32_t y;
-        if (!neighbour(&dsmc->ay, block->row, step, &y)) continue;
-        const uint32_t *at = &dsmc->first[(size_t)y * dsmc->ax.cells + x];
-        const float n = (float)(at[1] - at[0]), f = volume(&dsmc->ay, y);
-        sum->grains += n;
-        sum->pairs += n * (n - 1) / f;
-        sum->volume += f;
+    const struct dsmc_axis *ax = &block->dsmc->ax;
+    const uint32_t *restrict row = &block->dsmc->first[(size_t)y * ax->cells];
+    const int reach = reach_of(ax), columns = (int)(block->x1 - block->x0) + 2 * reach;
+    const int begin = (int)block->x0 - reach, inner = begin < 0 ? -begin : 0;
+    const int end = begin + columns > (int)ax->cells ? (int)ax->cells - begin : columns;
+    const float weight = 1 / height;
+    for (int k = inner; k < end; k++) {
+        const float n = (float)(int32_t)(row[begin + k + 1] - row[begin + k]);
+        sum->grains[k] += n;
+        sum->pairs[k] += weight * n * (n - 1);
+        sum->volume[k] += height;
     }
-    const float f = volume(&dsmc->ax, x);
-    sum->pairs /= f;
-    sum->volume *= f;
+    for (int k = 0; k < columns; k++) {
+        if (k == inner) k = end;                                /* beyond the grid's sides */
+        uint32_t x;
+        if (k >= columns || !neighbour(ax, block->x0, k - reach, &x)) continue;
+        const float n = (float)(int32_t)(row[x + 1] - row[x]);
+        sum->grains[k] += n;
+        sum->pairs[k] += weight * n * (n - 1);
+        sum->volume[k] += height;
+    }
 }
 
-static void find_local_factors(struct block *block)
+/* Border cells of a grid that does not wrap are wider or narrower than the others. */
+static void scale_borders(const struct block *block, struct hood *sum)
+{
+    const struct dsmc_axis *ax = &block->dsmc->ax;
+    const int64_t at[2] = {0, ax->cells - 1}, begin = (int64_t)block->x0 - reach_of(ax);
+    if (ax->wraps) return;
+    for (int side = 0; side < 2; side++) {
+        const int64_t k = at[side] - begin;
+        if (k < 0 || k >= WIDTH || (side == 1 && at[1] == at[0])) continue;
+        const float width = volume(ax, (uint32_t)at[side]);
+        sum->pairs[k] /= width;
+        sum->volume[k] *= width;
+    }
+}
+
+FORCE_INLINE void find_local_factors(struct block *block)
 {
     const struct dsmc *dsmc = block->dsmc;
-    const int reach = (int)reach_of(&dsmc->ax);
-    struct hood column[DSMC_BLOCK + 2 * DSMC_HOOD] = {{0}};
+    const int reach = reach_of(&dsmc->ax), rows = reach_of(&dsmc->ay);
     const int count = (int)(block->x1 - block->x0);
-    for (int k = -reach; k < count + reach; k++) {
-        uint32_t x;
-        if (neighbour(&dsmc->ax, block->x0, k, &x)) add_column(block, x, &column[k + reach]);
+    struct hood columns, sums;
+    memset(&columns, 0, sizeof columns);
+    memset(&sums, 0, sizeof sums);
+    for (int step = -rows; step <= rows; step++) {
+        uint32_t y;
+        if (!neighbour(&dsmc->ay, block->row, step, &y)) continue;
+        add_row(block, y, volume(&dsmc->ay, y), &columns);
+    }
+    scale_borders(block, &columns);
+    for (int o = 0; o <= 2 * reach; o++) {
+        for (int k = 0; k < count; k++) {
+            sums.grains[k] += columns.grains[k + o];
+            sums.pairs[k] += columns.pairs[k + o];
+            sums.volume[k] += columns.volume[k + o];
+        }
     }
     const float area = (float)(M_PI * dsmc->radius * dsmc->radius / dsmc->settings.weight)
                      * dsmc->ax.per * dsmc->ay.per;             /* of a particle, in cells */
+    const float height = volume(&dsmc->ay, block->row);
+    const int kind = dsmc->settings.chi;
     for (int k = 0; k < count; k++) {
-        struct hood sum = {0};
-        for (int o = 0; o <= 2 * reach; o++) {
-            sum.grains += column[k + o].grains;
-            sum.pairs += column[k + o].pairs;
-            sum.volume += column[k + o].volume;
-        }
-        const float f = volume(&dsmc->ay, block->row) * volume(&dsmc->ax, block->x0 + (uint32_t)k);
-        const float expected = sum.grains * (sum.grains - 1) / sum.volume;
-        const float chi = dsmc_chi(dsmc->settings.chi, sum.grains * area / sum.volume);
-        block->factor[k] = sum.pairs > 0 ? chi * expected / (sum.pairs * f) : 0;
+        const float q = sums.grains[k], v = sums.volume[k], pairs = sums.pairs[k];
+        const float chi = dsmc_chi(kind, q * area / v);
+        block->factor[k] = pairs > 0 ? chi * q * (q - 1) / (v * pairs * height) : 0;
     }
+    if (dsmc->ax.wraps) return;
+    if (block->x0 == 0) block->factor[0] /= volume(&dsmc->ax, 0);
+    const uint32_t last = dsmc->ax.cells - 1;
+    if (block->x1 == last + 1 && last > 0) block->factor[last - block->x0] /= volume(&dsmc->ax, last);
 }
 
 /* Without neighbours: the whole box is as crowded on average. */

@@ -5,7 +5,8 @@
  * Paper 000 (2.2) refuses a move into a full cell and leaves open what becomes of the grain.  A
  * heap stands if the refused grain tries the vertical part of its way, then the horizontal, else
  * collides with a grain of the full cell; and if it rests once both are slow, unless it can roll
- * down to one side.  A grain at rest is passed over while the cell below it stays full.  Cells are
+ * down to one side.  A grain at rest is passed over while the cell below it stays full and no drop
+ * of two cells opens beside it, as it does where sand runs out.  Cells are
  * two diameters wide and hold four grains, an area fraction of 0.785.
  *
  * The sweep goes through the grains in their order, from a random one on and in a random sense,
@@ -157,30 +158,58 @@ static void refuse(struct sweep *sweep, uint32_t i, uint32_t cell, uint32_t to)
     }
 }
 
-/* Still carried? */
+/* Has a cell beside it room?  Most grains of a heap learn from this that they cannot roll. */
+static bool has_free_side(const struct sweep *sweep, uint32_t cell)
+{
+    const struct dsmc *dsmc = sweep->dsmc;
+    const uint32_t x = cell % sweep->nx;
+    if (x == 0 || x + 1 == sweep->nx) return true;
+    return dsmc->load[cell - 1] < dsmc->full || dsmc->load[cell + 1] < dsmc->full;
+}
+
+/* A grain at rest starts only where the drop beside it is two cells: a slope that stands is steeper
+ * than one on which grains come to rest. */
+static int drop_side(const struct sweep *sweep, uint32_t cell, uint64_t word)
+{
+    const int begin = word & 1 ? 1 : -1;
+    for (int turn = 0; turn < 2; turn++) {
+        const int side = turn == 0 ? begin : -begin;
+        if (!is_full(sweep, cell, side, 0) && !is_full(sweep, cell, side, sweep->down)
+            && !is_full(sweep, cell, side, 2 * sweep->down)) return side;
+    }
+    return 0;
+}
+
+/* Does grain i, which is at rest, stay so?  Not if what carried it has gone, nor beside a drop. */
 static bool rests(struct sweep *sweep, uint32_t i, uint32_t cell)
 {
     struct dsmc *dsmc = sweep->dsmc;
     const uint32_t tag = dsmc->tags[i];
-    if (!(tag & DSMC_RESTS)) return false;
-    const bool carried = tag & DSMC_PLATE
-        ? !dsmc->walls.vary || dsmc_walls_carries(dsmc, &dsmc->grains[i])
-        : lies_on_full(sweep, cell);
-    if (!carried) dsmc->tags[i] = tag & DSMC_NAME;
-    return carried;
+    if (tag & DSMC_PLATE) {
+        if (!dsmc->walls.vary || dsmc_walls_carries(dsmc, &dsmc->grains[i])) return true;
+    } else if (lies_on_full(sweep, cell)) {
+        if (!has_free_side(sweep, cell)) return true;
+        const int side = drop_side(sweep, cell, rng_keyed(sweep->key, i, 1, 0));
+        if (side == 0) return true;
+        dsmc->grains[i].vx = (float)side * sweep->roll;
+    }
+    dsmc->tags[i] = tag & DSMC_NAME;
+    return false;
 }
 
-static void move_grain(struct sweep *sweep, uint32_t i)
+/* Moves grain i, which was in `cell` before. */
+static void move_grain(struct sweep *sweep, uint32_t i, uint32_t cell)
 {
     struct dsmc *dsmc = sweep->dsmc;
     struct dsmc_grain *p = &dsmc->grains[i];
-    const uint32_t cell = cell_at(dsmc, p->x, p->y);
-    if (rests(sweep, i, cell)) return;
+    if (dsmc->tags[i] & DSMC_RESTS && rests(sweep, i, cell)) return;
     const struct dsmc_grain before = *p;
-    const float speed = sqrtf(p->vx * p->vx + p->vy * p->vy);
-    const float time = speed * sweep->dt > sweep->way_max ? sweep->way_max / speed : sweep->dt;
+    const float speed2 = p->vx * p->vx + p->vy * p->vy, most2 = sweep->way_max * sweep->way_max;
+    const bool fast = speed2 * sweep->dt * sweep->dt > most2;
+    const float time = fast ? sweep->way_max / sqrtf(speed2) : sweep->dt;
     bool plate = false;
-    if (dsmc->walls.first && (dsmc_walls_near(dsmc, p->x, p->y) || speed * time > dsmc->walls.stride)) {
+    if (dsmc->walls.first && (dsmc_walls_near(dsmc, p->x, p->y)
+                              || speed2 * time * time > dsmc->walls.stride * dsmc->walls.stride)) {
         plate = dsmc_walls_fly(dsmc, i, time, 0);
     } else {
         p->x += time * (p->vx + 0.5f * time * sweep->gx);
@@ -236,8 +265,12 @@ void dsmc_heap_sweep(struct dsmc *dsmc)
     uint32_t i = (uint32_t)(rng_uniform(&rng) * n);
     const bool upwards = rng_u64(&rng) & 1;
     sweep.key = rng.state;
+    uint32_t cell = cell_at(dsmc, dsmc->grains[i].x, dsmc->grains[i].y);
     for (uint32_t k = 0; k < n; k++) {
-        move_grain(&sweep, i);
+        /* Grains lie cell by cell, so the next one's cell is this one or soon after. */
+        while (i < dsmc->first[cell]) cell--;
+        while (i >= dsmc->first[cell + 1]) cell++;
+        move_grain(&sweep, i, cell);
         if (upwards) i = i + 1 == n ? 0 : i + 1;
         else i = i == 0 ? n - 1 : i - 1;
     }

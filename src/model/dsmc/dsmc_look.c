@@ -4,6 +4,8 @@
  */
 #include "model/dsmc/dsmc_look.h"
 
+#include "model/dsmc/dsmc_walls.h"
+
 #include <math.h>
 
 /* Particles of weight w are drawn so that all together cover the area of the grains. */
@@ -32,6 +34,23 @@ static void show(const struct dsmc *dsmc, uint32_t i, double x, double y, struct
     if (out->species) out->species[at] = 0;
 }
 
+/* hsmc knows of a grain at rest no more than its cell.  The picture puts those of a cell side by
+ * side, from below, unless a wall is in the way. */
+static void lay_out(const struct dsmc *dsmc, uint32_t i, double *x, double *y)
+{
+    if (!dsmc->full || !(dsmc->tags[i] & DSMC_RESTS)) return;
+    const uint32_t cell = dsmc_cell(&dsmc->ax, &dsmc->ay, dsmc->grains[i].x, dsmc->grains[i].y);
+    const uint32_t side = (uint32_t)ceil(sqrt((double)dsmc->full)), rank = i - dsmc->first[cell];
+    const bool falls_up = dsmc->scene->gravity[1] > 0;
+    if (rank >= side * side) return;
+    const double column = (rank % side + 0.5) / side, row = (rank / side + 0.5) / side;
+    const double to_x = (cell % dsmc->ax.cells + column) / (double)dsmc->ax.per;
+    const double to_y = (cell / dsmc->ax.cells + (falls_up ? 1 - row : row)) / (double)dsmc->ay.per;
+    if (dsmc->walls.first && !dsmc_walls_clear(dsmc, &dsmc->grains[i], to_x, to_y)) return;
+    *x = dsmc->scene->box[0] + to_x;
+    *y = dsmc->scene->box[1] + to_y;
+}
+
 void dsmc_look_observe(const void *state, struct grains *out)
 {
     const struct dsmc *dsmc = state;
@@ -40,6 +59,7 @@ void dsmc_look_observe(const void *state, struct grains *out)
     out->count = out->contact_count = out->missed = 0;
     for (uint32_t i = 0; i < dsmc->count; i++) {
         double x = box[0] + (double)dsmc->grains[i].x, y = box[1] + (double)dsmc->grains[i].y;
+        lay_out(dsmc, i, &x, &y);
         /* Single precision may round onto or past a border. */
         if (!(dsmc->effects & EFFECT_OUTFLOW) && x > box[2]) x = box[2];
         if (!(dsmc->effects & EFFECT_OUTFLOW) && y > box[3]) y = box[3];

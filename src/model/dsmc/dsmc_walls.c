@@ -345,6 +345,21 @@ bool dsmc_walls_carries(const struct dsmc *dsmc, const struct dsmc_grain *grain)
     return false;
 }
 
+bool dsmc_walls_clear(const struct dsmc *dsmc, const struct dsmc_grain *grain, double x, double y)
+{
+    const struct dsmc_walls *walls = &dsmc->walls;
+    const uint32_t cell = dsmc_walls_cell(dsmc, (float)x, (float)y);
+    for (uint32_t k = walls->first[cell]; k < walls->first[cell + 1]; k++) {
+        if (!walls->here[walls->near[k] / IMAGES]) continue;
+        const struct wall_nearest there = nearest_of(dsmc, walls->near[k], x, y);
+        const struct wall_nearest here = nearest_of(dsmc, walls->near[k], (double)grain->x,
+                                                    (double)grain->y);
+        if (there.distance < 0.95 * dsmc->radius) return false;
+        if (there.nx * here.nx + there.ny * here.ny < 0) return false;
+    }
+    return true;
+}
+
 void dsmc_walls_collect(struct dsmc *dsmc)
 {
     const uint32_t bodies = dsmc->scene->obstacle_count;

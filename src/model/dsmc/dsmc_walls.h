@@ -40,6 +40,9 @@ void dsmc_walls_slide(const struct dsmc *dsmc, struct dsmc_grain *grain, float d
 /* Does a wall still carry the grain? */
 bool dsmc_walls_carries(const struct dsmc *dsmc, const struct dsmc_grain *grain);
 
+/* Does the grain fit there, on the same side of all walls?  Coordinates count from the corner. */
+bool dsmc_walls_clear(const struct dsmc *dsmc, const struct dsmc_grain *grain, double x, double y);
+
 /* Adds what the blocks gave to the obstacles to the tally, in their order. */
 void dsmc_walls_collect(struct dsmc *dsmc);
 
