@@ -57,8 +57,8 @@ static bool measure_model(const struct bench_case *which, struct bench_result *r
     return done;
 }
 
-/* The settled bed of frictional discs that other DEM codes are measured on (bench_md.h); the tile is
- * settled once for all cases.  `amount` is the number of threads, `per_grain` means friction. */
+/* The settled bed of frictional discs that other DEM codes are measured on (bench_md.h); the tile
+ * is settled once for all cases.  `amount` is the number of threads, `per_grain` means friction. */
 static bool measure_bed(const struct bench_case *which, struct bench_result *result,
                         struct error *error)
 {

@@ -65,7 +65,8 @@ static void test_vector_and_plain_loops_give_the_same_bytes(void **unused)
         for (int plain = 0; plain < 2; plain++) {
             char text[600];
             snprintf(text, sizeof text, "until = 10.0; box = [0.0, 0.0, 27.0, 27.0];"
-                "left = \"periodic\"; right = \"periodic\"; %s placements = ({ kind = \"square\"; spacing = 1.5;"
+                "left = \"periodic\"; right = \"periodic\"; %s"
+                "placements = ({ kind = \"square\"; spacing = 1.5;"
                 "temperature = 1.0; }); ed = { vectors = \"%s\"; };", kinds[k],
                 plain ? "none" : "auto");
             struct scenes_run *run = scenes_begin(text, "ed");
@@ -323,7 +324,7 @@ static void test_unequal_grains_exchange_what_their_masses_say(void **unused)
         "ed");
     scenes_advance(run, 10);
     struct grains g = scenes_look(run);
-    const uint32_t big = g.radius[0] > 1 ? 0 : 1, small = 1u - big;
+    const uint32_t big = g.radius[0] > 1 ? 0u : 1u, small = 1u - big;
     CHECK_NEAR(g.mass[big] / g.mass[small], 100, 1e-9);
     const double along = (g.vx[small] * g.vx[small] + g.vy[small] * g.vy[small]) / g.vx[small];
     CHECK_NEAR(along, 1.8 * 100 / 101, 1e-12);

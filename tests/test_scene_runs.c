@@ -10,8 +10,8 @@ static void test_a_disc_in_a_smooth_bowl_swings_like_a_pendulum(void **unused)
 {
     (void)unused;
     /* Its centre moves on a circle of R - r = 10 - 0.5.  Released at rest at theta_0 = 0.1, it is
-     * back after T = 2 pi sqrt((R - r)/g) (1 + theta_0^2/16) = 19.377, and passes the middle after a
-     * quarter of that.  It begins 0.01 above the wall: 1e-3 of T. */
+     * back after T = 2 pi sqrt((R - r)/g) (1 + theta_0^2/16) = 19.377, and passes the middle after
+     * a quarter of that.  It begins 0.01 above the wall: 1e-3 of T. */
     struct scenes_run *run = scenes_begin("until = 100.0; box = [-12.0, -12.0, 12.0, 12.0];" HEAVY
         "grains = ({ radius = 0.5; restitution = 0.2; stiffness = 1e4; });"
         "placements = ({ kind = \"square\"; count = 1;"

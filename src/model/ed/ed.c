@@ -372,7 +372,7 @@ static const struct fault *ed_fault(const void *state)
 
 static uint64_t ed_memory(const struct scene *scene)
 {
-    const uint64_t n = capacity(scene), bytes_per_grain = 260;
+    const uint64_t n = capacity(scene), bytes_per_grain = 170;
     const double d = 2 * scene->radius_max;
     const double cells = (scene->box[2] - scene->box[0]) * (scene->box[3] - scene->box[1])
                        / (cell_width_default * cell_width_default * d * d);

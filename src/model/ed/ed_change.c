@@ -10,10 +10,11 @@
 #include <math.h>
 
 /* A grain at rest on a floor bounces with ever shorter steps; the TC rule ends that with elastic
- * bounces that last about t_c.  One that lies there without any bounce (set down so, or stopped
- * dead by a neighbour) gets this share of such a bounce's speed, so that time can go on.  Its
- * energy is 1e-3 of that of the bounces. */
-static const double bounce_least = 0.03;
+ * bounces that last about t_c.  No bounce is made shorter than this share of t_c: a bed that was
+ * set down at rest would otherwise have no motion at all, and its collisions no end; one pressed
+ * by hardly moving neighbours would collide at a rate that goes as one over their speed.  So a bed
+ * at rest keeps an agitation of about g t_c / 2. */
+static const double bounce_least = 1;
 
 bool ed_change_leaves(const struct ed *ed, uint32_t cx, uint32_t cy)
 {

@@ -24,6 +24,7 @@ enum {
 enum {
     LIST_ROOM = 128,            /* candidates tried at a time */
     AHEAD_CELLS = 8,            /* events ahead for which memory is asked for */
+    AHEAD_GRAINS = 3,
     CROWDED = 4096              /* events that arise in an open bucket before it is too wide */
 };
 
@@ -169,11 +170,13 @@ FORCE_INLINE void predict(struct ed *ed, uint32_t i, int with)
     conclude(ed, i, with);
 }
 
-/* Grain i goes over into the next cell: only the three cells that came into reach are new. */
-FORCE_INLINE void cross(struct ed *ed, uint32_t i, int with)
+/* Through which face of its cell does grain i leave now: along x or y, up or down?  It is the one
+ * that it is farthest beyond.  Rounding may leave it short of that by a hair; if by more, it turned
+ * back in the last moment and stays: false. */
+FORCE_INLINE bool leaving(const struct ed *ed, uint32_t i, int with, bool *along_x, bool *up)
 {
-    struct ed_grain *g = &ed->grains[i];
-    struct ed_event *e = &ed->events[i];
+    const struct ed_grain *g = &ed->grains[i];
+    const struct ed_event *e = &ed->events[i];
     const struct ed_cells *c = &ed->cells;
     const double t = ed->clock.now;
     double x = g->x + t * g->vx, y = g->y + t * g->vy, vx = g->vx, vy = g->vy;
@@ -185,17 +188,26 @@ FORCE_INLINE void cross(struct ed *ed, uint32_t i, int with)
     }
     if (vx == 0) vx = ed->gx;
     if (vy == 0) vy = ed->gy;
-    /* It leaves through the face that it is farthest beyond.  Rounding may leave it short of that
-     * by a hair; if by more, it turned back in the last moment and stays. */
     const double out_x = vx > 0 ? x - c->east[e->cx] : vx < 0 ? c->west[e->cx] - x : -INFINITY,
                  out_y = vy > 0 ? y - c->north[e->cy] : vy < 0 ? c->south[e->cy] - y : -INFINITY;
-    if (with & WITH_SOLIDS && scan_most(out_x, out_y) < -1e-9 * ed->cells.width_x) {
+    *along_x = out_x >= out_y;
+    *up = *along_x ? vx > 0 : vy > 0;
+    return !(with & WITH_SOLIDS) || scan_most(out_x, out_y) >= -1e-9 * c->width_x;
+}
+
+/* Grain i goes over into the next cell: only the three cells that came into reach are new. */
+FORCE_INLINE void cross(struct ed *ed, uint32_t i, int with)
+{
+    struct ed_grain *g = &ed->grains[i];
+    struct ed_event *e = &ed->events[i];
+    const struct ed_cells *c = &ed->cells;
+    bool along_x, up;
+    if (!leaving(ed, i, with, &along_x, &up)) {
         ed->clock.stale++;
         predict(ed, i, with);
         return;
     }
     ed->clock.crossings++;
-    const bool along_x = out_x >= out_y, up = along_x ? vx > 0 : vy > 0;
     uint32_t cx = e->cx, cy = e->cy;
     cx += along_x ? (up ? 1 : UINT32_MAX) : 0;
     cy += along_x ? 0 : (up ? 1 : UINT32_MAX);
@@ -340,6 +352,20 @@ FORCE_INLINE void fetch_ahead(const struct ed *ed, uint32_t i)
     }
 }
 
+/* The same later, when the cells have come: the first grain of each. */
+FORCE_INLINE void fetch_grains(const struct ed *ed, uint32_t i)
+{
+    const struct ed_event *e = &ed->events[i];
+    const struct ed_cells *c = &ed->cells;
+    const struct ed_cell *cell = &c->cells[ed_cells_index(c, e->cx - 1u, e->cy - 1u)];
+    for (int row = 0; row < 3; row++, cell += c->stride) {
+        for (int k = 0; k < 3; k++) {
+            const uint32_t id = cell[k].id[0];
+            __builtin_prefetch(&ed->grains[id == ED_CELL_EMPTY ? i : id]);
+        }
+    }
+}
+
 FORCE_INLINE void fetch_bucket(const struct ed *ed)
 {
     const struct ed_queue *q = &ed->queue;
@@ -396,6 +422,9 @@ FORCE_INLINE enum ed_stop run(struct ed *ed, double limit, uint64_t *budget, int
         if (old) continue;
         if (q->ready_count >= AHEAD_CELLS) {
             fetch_ahead(ed, q->ready[q->ready_count - AHEAD_CELLS].id);
+        }
+        if (q->ready_count >= AHEAD_GRAINS) {
+            fetch_grains(ed, q->ready[q->ready_count - AHEAD_GRAINS].id);
         }
         clock->now = first.t;
         clock->events++;

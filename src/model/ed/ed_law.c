@@ -7,16 +7,18 @@
 #include "model/ed/ed.h"
 
 /* A species that leaves its restitution open keeps its energy (resolve tells). */
-static double restitution_of(const struct species *species)
+static double restitution_of(const struct species *species, const struct ed_settings *settings)
 {
-    return isnan(species->restitution) ? 1 : species->restitution;
+    if (!isnan(species->restitution)) return species->restitution;
+    return isnan(settings->restitution) ? 1 : settings->restitution;
 }
 
-static struct ed_pair mixed(const struct species *a, const struct species *b, double tangential)
+static struct ed_pair mixed(const struct species *a, const struct species *b,
+                            const struct ed_settings *settings)
 {
     /* Geometric means, as for soft discs. */
-    return (struct ed_pair){sqrt(restitution_of(a) * restitution_of(b)),
-                            sqrt(a->friction * b->friction), tangential};
+    const double r2 = restitution_of(a, settings) * restitution_of(b, settings);
+    return (struct ed_pair){sqrt(r2), sqrt(a->friction * b->friction), settings->tangential};
 }
 
 bool ed_law_create(struct ed_law *law, const struct scene *scene,
@@ -33,7 +35,7 @@ bool ed_law_create(struct ed_law *law, const struct scene *scene,
         law->inertia_factor[a] = scene->species[a].inertia == INERTIA_SPHERE ? 0.4 : 0.5;
         for (uint32_t b = 0; b < n; b++) {
             struct ed_pair *pair = &law->pairs[a * n + b], *wall = &law->walls[a * n + b];
-            *pair = *wall = mixed(&scene->species[a], &scene->species[b], settings->tangential);
+            *pair = *wall = mixed(&scene->species[a], &scene->species[b], settings);
             if (!isnan(settings->wall_restitution)) wall->restitution = settings->wall_restitution;
             if (!isnan(settings->wall_friction)) wall->friction = settings->wall_friction;
             if (!isnan(settings->wall_tangential)) wall->tangential = settings->wall_tangential;

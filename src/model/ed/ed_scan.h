@@ -152,6 +152,25 @@ scan_remove(struct ed_cells *cells, uint32_t cell, uint32_t id)
     ids[last] = ED_CELL_EMPTY;
 }
 
+/* Takes over the soonest of the lanes; among equals the one that came first in the list. */
+static inline __attribute__((always_inline)) void
+scan_keep(struct scan *scan, __m256d best, __m256d who, const uint32_t *list)
+{
+    __m256d least = _mm256_min_pd(best, _mm256_permute2f128_pd(best, best, 1));
+    least = _mm256_min_pd(least, _mm256_permute_pd(least, 5));
+    const double soonest = _mm256_cvtsd_f64(least);
+    if (!(soonest < scan->best)) return;
+    double times[4], places[4], first = INFINITY;
+    _mm256_storeu_pd(times, best);
+    _mm256_storeu_pd(places, who);
+    for (int lane = 0; lane < 4; lane++) {
+        if (times[lane] == soonest && places[lane] < first) first = places[lane];
+    }
+    scan->best = soonest;
+    scan->partner = list[(uint32_t)first];
+    scan->found = true;
+}
+
 /* As above, four candidates at a time: the same operations in each lane. */
 static inline __attribute__((always_inline)) void
 scan_list(const struct ed *ed, struct scan *scan, uint32_t *list, uint32_t n, bool sizes)
@@ -206,20 +225,7 @@ scan_list(const struct ed *ed, struct scan *scan, uint32_t *list, uint32_t n, bo
         who = _mm256_blendv_pd(who, place, sooner);
         place = _mm256_add_pd(place, _mm256_set1_pd(4));
     }
-    /* The soonest of the lanes; among equals the one that came first in the list. */
-    __m256d least = _mm256_min_pd(best, _mm256_permute2f128_pd(best, best, 1));
-    least = _mm256_min_pd(least, _mm256_permute_pd(least, 5));
-    const double soonest = _mm256_cvtsd_f64(least);
-    if (!(soonest < scan->best)) return;
-    double times[4], places[4], first = INFINITY;
-    _mm256_storeu_pd(times, best);
-    _mm256_storeu_pd(places, who);
-    for (int lane = 0; lane < 4; lane++) {
-        if (times[lane] == soonest && places[lane] < first) first = places[lane];
-    }
-    scan->best = soonest;
-    scan->partner = list[(uint32_t)first];
-    scan->found = true;
+    scan_keep(scan, best, who, list);
 }
 
 #endif

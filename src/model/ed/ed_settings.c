@@ -13,7 +13,9 @@
 static const struct key keys[] = {
     {"t_c", KEY_REAL, AT(t_c), "nan", 0, NAN, "time", NULL,
      "cut-off time: a grain whose last contact is younger collides elastically; 0: plain ED, which "
-     "stops where inelastic collapse begins; absent: 1e-3 sqrt(d/g), or 1e-5 d/v without gravity"},
+     "stops where inelastic collapse begins; absent: 1e-2 sqrt(d/g), or 1e-5 d/v without gravity"},
+    {"restitution", KEY_REAL, AT(restitution), "nan", 0, 1, "1", NULL,
+     "restitution of grains that tell only a stiffness and a damping, for soft discs"},
     {"tangential", KEY_REAL, AT(tangential), "0", -1, 1, "1", NULL,
      "beta0: greatest tangential restitution of grains with friction, 1: rough and elastic"},
     {"wall_restitution", KEY_REAL, AT(wall_restitution), "nan", 0, 1, "1", NULL,
@@ -59,12 +61,13 @@ static double speed_at_start(const struct scene *scene)
     return speed;
 }
 
-/* The longest cut-off that changes nothing that is measured: bounces on a floor end at 5e-4 of a
- * free fall through a diameter; a freely cooling gas keeps its energy within 1 %. */
+/* Long enough for dense beds to run (their events come at a rate of about 1/t_c), short enough to
+ * change little that is measured: bounces on a floor end when they are 1e-5 d high; a freely
+ * cooling gas keeps its energy within 1 %. */
 static double chosen_cut_off(const struct scene *scene)
 {
     const double g = hypot(scene->gravity[0], scene->gravity[1]), d = 2 * scene->radius_mean;
-    if (g > 0) return 1e-3 * sqrt(d / g);
+    if (g > 0) return 1e-2 * sqrt(d / g);
     const double speed = speed_at_start(scene);
     return speed > 0 ? 1e-5 * d / speed : 0;
 }
@@ -73,7 +76,8 @@ struct ed_settings ed_settings_of(const struct scene *scene)
 {
     const struct ed_settings *given = scene_settings(scene, ed_settings_group.name);
     struct ed_settings settings = {
-        .t_c = NAN, .wall_restitution = NAN, .wall_friction = NAN, .wall_tangential = NAN,
+        .t_c = NAN, .restitution = NAN, .wall_restitution = NAN, .wall_friction = NAN,
+        .wall_tangential = NAN,
         .reference_speed = 1, .cell = NAN, .margin = 1
     };
     if (given) settings = *given;
@@ -85,7 +89,7 @@ void ed_settings_resolve(struct scene *scene, struct findings *findings)
 {
     for (uint32_t k = 0; k < scene->species_count; k++) {
         struct species *species = &scene->species[k];
-        if (!isnan(species->restitution)) continue;
+        if (!isnan(species->restitution) || !isnan(ed_settings_of(scene).restitution)) continue;
         char key[64];
         snprintf(key, sizeof key, "grains.[%u].restitution", k);
         if (isnan(species->damping) || species->damping == 0) {
@@ -93,7 +97,7 @@ void ed_settings_resolve(struct scene *scene, struct findings *findings)
             continue;
         }
         findings_tell(findings, scene, FINDING_ERROR, key, "hard discs need a restitution; this "
-            "species has only a damping, which belongs to soft discs; give 'restitution'");
+            "species has only a damping, which belongs to soft discs; give ed.restitution");
     }
     for (uint32_t w = 0; w < scene->wall_count; w++) {
         const struct wall *wall = &scene->walls[w];

@@ -11,6 +11,7 @@ enum ed_vectors { ED_VECTORS_AUTO, ED_VECTORS_NONE };
 
 struct ed_settings {
     double t_c;                 /* TC rule: after a contact a grain stays elastic for so long */
+    double restitution;         /* of species that have none of their own; NAN */
     double tangential;          /* beta0, largest tangential restitution */
     double wall_restitution, wall_friction, wall_tangential;    /* NAN: from the species */
     double exponent;            /* 1 - r grows with impact speed to this power; 0: constant r */

@@ -8,7 +8,7 @@
  * the default spacing is sqrt(7) mean diameters.  Grains have no identity here: a picture numbers
  * them by node and place.
  */
-#include "model/lga/lga.h"
+#include "model/lga/lga_bits.h"
 
 #include "model/model.h"
 
@@ -19,14 +19,17 @@
 
 #define SQRT7 2.6457513110645905905
 
-enum { SITES_MAX = 1 << 26 };           /* 40 bytes a site: 2.7 GB */
+/* The plain form takes 40 bytes a node, 2.7 GB in all; the fast one takes bits. */
+static const double sites_max_plain = 1 << 26, sites_max_fast = 0xf0000000u;
 
 #define ROW(member) offsetof(struct lga_settings, member)
 static const struct key keys[] = {
-    {"method", KEY_CHOICE, ROW(method), "gmlg", NAN, NAN, NULL, "gmlg",
-     "rules: gmlg, a gas with gravity and up to seven rest grains a node"},
+    {"method", KEY_CHOICE, ROW(method), "gmlg", NAN, NAN, NULL, "gmlg|fhp2|sandpile",
+     "rules: gmlg, sand with up to seven rest grains a node; fhp2, a gas with one; sandpile, the "
+     "same with collisions that end at rest"},
     {"spacing", KEY_REAL, ROW(spacing), "nan", KEY_POSITIVE, NAN, "length", NULL,
-     "distance of nodes; when absent sqrt(7) mean diameters, so that seven grains fill a node"},
+     "distance of nodes; when absent one mean diameter, with gmlg sqrt(7) of them, so that seven "
+     "grains fill a node"},
     {"tick", KEY_REAL, ROW(tick), "nan", KEY_POSITIVE, NAN, "time", NULL,
      "duration of a tick, in which a mover goes one spacing; "
      "when absent a fall through the box takes "
@@ -42,7 +45,21 @@ static const struct key keys[] = {
     {"gain", KEY_REAL, ROW(gain), "1", 0, 1, "1", NULL,
      "chance that an elastic collision with a rest grain sets it in motion"},
     {"orientation", KEY_CHOICE, ROW(orientation), "V", NAN, NAN, NULL, "V|H",
-     "V: a link points down (heaps of 30 degrees); H: links lie level (heaps of 60 degrees)"},
+     "gmlg: V, a link points down (heaps of 30 degrees); H, links lie level (60 degrees); the other "
+     "methods are always H"},
+    {"p", KEY_REAL, ROW(p), "nan", 0, 1, "1", NULL,
+     "fhp2, sandpile: share of collisions that lose energy; when absent 1 - restitution^2"},
+    {"b", KEY_REAL, ROW(b), "1", 0, 1, "1", NULL,
+     "fhp2, sandpile: roughness of walls, the chance that they send a grain straight back instead "
+     "of reflecting it like a mirror"},
+    {"fill", KEY_REAL, ROW(fill), "0", 0, 1, "1", NULL,
+     "share of the directions of all nodes that is filled with movers at the start, at random"},
+    {"fly", KEY_BOOL, ROW(fly), "true", NAN, NAN, NULL, NULL,
+     "sandpile: gravity bends the way of moving grains, not only of those at rest"},
+    {"strict", KEY_BOOL, ROW(strict), "false", NAN, NAN, NULL, NULL,
+     "sandpile: a grain at rest does not start towards a node with movers"},
+    {"heap", KEY_BOOL, ROW(heap), "false", NAN, NAN, NULL, NULL,
+     "sandpile: grains that stop where they hit a floor belong to a heap, which stops others"},
 };
 
 static const struct key_group group = {
@@ -66,6 +83,11 @@ static double speed_at_start(const struct scene *scene)
     return most > 0 ? most : 1;
 }
 
+static double diameters_a_node(const struct lga_settings *s)
+{
+    return s->method == LGA_GMLG ? SQRT7 : 1;
+}
+
 /* A collision with restitution e keeps e^2 of the energy of the relative motion; here a share k
  * of the collisions loses all of it. */
 static double inelastic_share(const struct scene *scene)
@@ -81,10 +103,11 @@ static double inelastic_share(const struct scene *scene)
 
 static struct lga_settings completed(const struct scene *scene)
 {
-    struct lga_settings s = {.spacing = NAN, .tick = NAN, .k = NAN, .g = 0.5, .pw = NAN, .gain = 1};
+    struct lga_settings s = {.spacing = NAN, .tick = NAN, .k = NAN, .g = 0.5, .pw = NAN, .gain = 1,
+                             .p = NAN, .b = 1, .fly = true};
     const struct lga_settings *given = scene_settings(scene, "lga");
     if (given) s = *given;
-    if (!isfinite(s.spacing)) s.spacing = SQRT7 * 2 * scene->radius_mean;
+    if (!isfinite(s.spacing)) s.spacing = diameters_a_node(&s) * 2 * scene->radius_mean;
     if (!isfinite(s.tick)) {
         double gravity = 0;             /* the strongest of all phases, so that they tick alike */
         for (uint32_t p = 0; p < scene->phase_count; p++) {
@@ -97,6 +120,7 @@ static struct lga_settings completed(const struct scene *scene)
     }
     if (!isfinite(s.k)) s.k = inelastic_share(scene);
     if (!isfinite(s.pw)) s.pw = s.k;
+    if (!isfinite(s.p)) s.p = inelastic_share(scene);
     return s;
 }
 
@@ -105,6 +129,11 @@ static double sites_about(const struct scene *scene, double spacing)
 {
     const double width = scene->box[2] - scene->box[0], height = scene->box[3] - scene->box[1];
     return (width / spacing + 5) * (height / spacing + 5) * 2 / sqrt(3);
+}
+
+static double sites_max(const struct lga_settings *s)
+{
+    return s->method == LGA_FHP2 ? sites_max_fast : sites_max_plain;
 }
 
 /* Fills in spacing and tick, the same ones for all phases.  k and pw stay open: they follow from
@@ -122,10 +151,10 @@ static void lga_resolve(struct scene *scene, struct findings *findings)
 {
     const struct lga_settings s = completed(scene);
     fill_settings(scene, &s);
-    if (!(sites_about(scene, s.spacing) <= SITES_MAX)) {
+    if (!(sites_about(scene, s.spacing) <= sites_max(&s))) {
         findings_tell(findings, scene, FINDING_ERROR, "lga.spacing", "lga.spacing = %g gives about "
-            "%.3g nodes, more than %d; use a larger spacing or a smaller box", s.spacing,
-            sites_about(scene, s.spacing), SITES_MAX);
+            "%.3g nodes, more than %.3g; use a larger spacing or a smaller box", s.spacing,
+            sites_about(scene, s.spacing), sites_max(&s));
     }
     const double gx = scene->gravity[0], gy = scene->gravity[1];
     if (gx != 0 || gy > 0) {
@@ -147,8 +176,10 @@ static void lga_resolve(struct scene *scene, struct findings *findings)
 
 static uint64_t lga_memory(const struct scene *scene)
 {
-    const uint64_t site = LGA_DIRECTIONS * sizeof(uint32_t) + 2 * sizeof(uint32_t) + 8;
-    return (uint64_t)fmin(sites_about(scene, completed(scene).spacing), 1e15) * site;
+    const struct lga_settings s = completed(scene);
+    const double plain = LGA_DIRECTIONS * sizeof(uint32_t) + 8, fast = (LGA_PLANES + 2) / 8.0;
+    const double sites = fmin(sites_about(scene, s.spacing), 1e15);
+    return (uint64_t)(sites * (s.method == LGA_FHP2 ? fast : plain));
 }
 
 /* --- life --- */
@@ -163,7 +194,7 @@ static void update_walls(struct lga *lga)
         present = archive_hash(present, &there, sizeof there);
     }
     if (lga->walls_stale || present != lga->gates_present) {
-        lga_lattice_rasterise(&lga->lattice, lga->scene, t, lga->kind);
+        lga_node_set_kinds(lga, t);
         lga->gates_present = present;
         lga->walls_stale = false;
         lga->trapped = true;
@@ -177,7 +208,7 @@ static void mean_grain(struct lga *lga)
     double density = 0;
     for (uint32_t k = 0; k < scene->species_count; k++) density += scene->species[k].density;
     density = scene->species_count ? density / scene->species_count : 1;
-    lga->radius = lga->lattice.spacing / (2 * SQRT7);
+    lga->radius = lga->lattice.spacing / (lga->rule.method == LGA_GMLG ? 2 * SQRT7 : 2);
     lga->mass = density * M_PI * scene->radius_mean * scene->radius_mean;
 }
 
@@ -192,15 +223,20 @@ static bool set_up(struct lga *lga, struct error *error)
 {
     const struct scene *scene = lga->scene;
     const struct lga_settings s = completed(scene);
-    if (!(s.spacing > 0) || !(sites_about(scene, s.spacing) <= SITES_MAX)) {
+    if (!(s.spacing > 0) || !(sites_about(scene, s.spacing) <= sites_max(&s))) {
         return error_set_code(error, EXIT_SCENE, "%s: lga.spacing = %g does not give a lattice of "
-            "1 to %d nodes; delete the line and sandreel chooses", scene->path, s.spacing,
-            SITES_MAX);
+            "1 to %.3g nodes; delete the line and sandreel chooses", scene->path, s.spacing,
+            sites_max(&s));
     }
     lga->rule = (struct lga_rule){
-        .gravity = scene->effects & EFFECT_GRAVITY, .vertical = s.orientation == LGA_VERTICAL,
-        .inelastic = s.k, .fall = s.g, .friction = s.s, .wall_stop = s.pw, .gain = s.gain
+        .method = (enum lga_method)s.method, .gravity = scene->effects & EFFECT_GRAVITY,
+        .vertical = s.method == LGA_GMLG && s.orientation == LGA_VERTICAL,
+        .inelastic = s.k, .fall = s.g, .friction = s.s, .wall_stop = s.pw, .gain = s.gain,
+        .loss = s.p, .smooth = 1 - s.b, .fly = s.fly, .strict = s.strict,
+        .heap = s.heap && s.method == LGA_SANDPILE
     };
+    lga->fill = s.fill;
+    lga->sinks = scene->effects & EFFECT_OUTFLOW;
     lga->lattice = lga_lattice_of(scene, s.spacing, lga->rule.vertical);
     lga->sites = lga->lattice.rows * lga->lattice.columns;
     lga->tick = s.tick;
@@ -210,7 +246,7 @@ static bool set_up(struct lga *lga, struct error *error)
             "lga.spacing a larger value than %g", scene->path, lga->sites, s.spacing);
     }
     mean_grain(lga);
-    lga_lattice_rasterise(&lga->lattice, scene, 0, lga->kind);
+    lga_node_set_kinds(lga, 0);
     lga->walls_stale = true;            /* the next tick may begin at another time */
     return lga_fill_placed(lga, error);
 }
@@ -291,8 +327,10 @@ static void lga_observe(const void *state, struct grains *out)
     out->count = out->contact_count = out->missed = 0;
     uint32_t id = 0;
     for (uint32_t n = 0; n < lga->sites; n++) {
-        const unsigned moving = lga->moving[n];
-        int resting = lga->rest[n];
+        const struct lga_node node = lga_node_get(lga, n);
+        const unsigned moving = node.moving;
+        int resting = node.rest;
+        if (moving == 0 && resting == 0) continue;
         for (int d = 0; d < LGA_DIRECTIONS; d++) {
             if (moving >> d & 1) show(lga, out, id++, n, d + 1, true);
         }
@@ -308,35 +346,54 @@ static void lga_observe(const void *state, struct grains *out)
     }
 }
 
+/* All grains of a row of nodes are alike high, or (turned) they are asked one by one. */
+static void count_row(const struct lga *lga, uint32_t row, uint64_t sum[LGA_PLANES], double *potential)
+{
+    const struct lga_lattice *lattice = &lga->lattice;
+    const double *gravity = lga->scene->gravity;
+    const uint32_t first = row * lattice->columns;
+    double x, y;
+    if (lga->bits && gravity[0] == 0) {
+        uint64_t grains = 0;
+        lga_bits_sum(lga, row, sum);
+        for (int p = 0; p < LGA_PLANES; p++) grains += sum[p];
+        lga_lattice_position(lattice, first, &x, &y);
+        *potential -= lga->mass * (double)grains * gravity[1] * y;
+        return;
+    }
+    for (uint32_t n = first; n < first + lattice->columns; n++) {
+        const struct lga_node node = lga_node_get(lga, n);
+        const int load = node.rest + __builtin_popcount(node.moving);
+        if (load == 0) continue;
+        lga_lattice_position(lattice, n, &x, &y);
+        *potential -= lga->mass * load * (gravity[0] * x + gravity[1] * y);
+        for (int d = 0; d < LGA_DIRECTIONS; d++) sum[d] += node.moving >> d & 1;
+        sum[LGA_DIRECTIONS] += node.rest;
+    }
+}
+
 static void lga_count(const void *state, struct counters *out)
 {
     const struct lga *lga = state;
-    double energy[LGA_DIRECTIONS], vx[LGA_DIRECTIONS], vy[LGA_DIRECTIONS];
-    for (int d = 0; d < LGA_DIRECTIONS; d++) {
-        lga_lattice_vector(&lga->lattice, d * M_PI / 3, &vx[d], &vy[d]);
-        vx[d] /= lga->tick;
-        vy[d] /= lga->tick;
-        energy[d] = 0.5 * lga->mass * (vx[d] * vx[d] + vy[d] * vy[d]);
-    }
-    uint64_t flying[LGA_DIRECTIONS] = {0};
+    uint64_t grains[LGA_PLANES] = {0};
     *out = (struct counters){.time = lga_step_time(lga), .steps = lga->ticks,
         .grains_in = lga->grains_in, .grains_out = lga->grains_out,
         .collisions = lga->collisions, .rejected = lga->refused, .overlap_max = NAN};
-    for (uint32_t n = 0; n < lga->sites; n++) {
-        const unsigned moving = lga->moving[n];
-        const int load = lga->rest[n] + __builtin_popcount(moving);
-        if (load == 0) continue;
-        double x, y;
-        lga_lattice_position(&lga->lattice, n, &x, &y);
-        out->grains += (uint64_t)load;
-        out->potential_energy -= lga->mass * load
-                               * (lga->scene->gravity[0] * x + lga->scene->gravity[1] * y);
-        for (int d = 0; d < LGA_DIRECTIONS; d++) flying[d] += moving >> d & 1;
+    for (uint32_t row = 0; row < lga->lattice.rows; row++) {
+        uint64_t sum[LGA_PLANES] = {0};
+        count_row(lga, row, sum, &out->potential_energy);
+        for (int p = 0; p < LGA_PLANES; p++) grains[p] += sum[p];
     }
+    for (int p = 0; p < LGA_PLANES; p++) out->grains += grains[p];
     for (int d = 0; d < LGA_DIRECTIONS; d++) {
-        out->kinetic_energy += energy[d] * (double)flying[d];
-        out->momentum_x += lga->mass * vx[d] * (double)flying[d];
-        out->momentum_y += lga->mass * vy[d] * (double)flying[d];
+        double vx, vy;
+        lga_lattice_vector(&lga->lattice, d * M_PI / 3, &vx, &vy);
+        vx /= lga->tick;
+        vy /= lga->tick;
+        const double flying = lga->mass * (double)grains[d];
+        out->kinetic_energy += 0.5 * flying * (vx * vx + vy * vy);
+        out->momentum_x += flying * vx;
+        out->momentum_y += flying * vy;
     }
 }
 
@@ -344,8 +401,14 @@ static void lga_archive(void *state, struct archive *archive)
 {
     struct lga *lga = state;
     double tick = lga->tick;
-    archive_array(archive, "lga.moving", lga->moving, lga->sites);
-    archive_array(archive, "lga.rest", lga->rest, lga->sites);
+    if (lga->bits) {
+        archive_array(archive, "lga.planes", lga->bits->planes,
+                      (size_t)lga->lattice.rows * LGA_PLANES * lga->bits->words);
+    } else {
+        archive_array(archive, "lga.moving", lga->moving, lga->sites);
+        archive_array(archive, "lga.rest", lga->rest, lga->sites);
+    }
+    if (lga->heap) archive_array(archive, "lga.heap", lga->heap, lga->sites);
     archive_value(archive, "lga.ticks", &lga->ticks);
     archive_value(archive, "lga.tick", &tick);
     archive_value(archive, "lga.base_ticks", &lga->base_ticks);
@@ -360,7 +423,7 @@ static void lga_archive(void *state, struct archive *archive)
         archive_value(archive, name, &lga->entered[k]);
     }
     if (archive->mode != ARCHIVE_LOAD || archive->failed) return;
-    for (uint32_t n = 0; n < lga->sites; n++) {
+    for (uint32_t n = 0; n < lga->sites && !lga->bits; n++) {
         if (lga->rest[n] > LGA_ROOM || lga->moving[n] >= LGA_STATES) {
             archive_fail(archive, "the saved lattice holds a node in an impossible state");
             return;

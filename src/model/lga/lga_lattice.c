@@ -56,20 +56,22 @@ struct lga_lattice lga_lattice_of(const struct scene *scene, double spacing, boo
     return lattice;
 }
 
-void lga_lattice_join(const struct lga_lattice *lattice, uint32_t (*beside)[LGA_DIRECTIONS])
+uint32_t lga_lattice_beside(const struct lga_lattice *lattice, uint32_t site, int direction)
 {
     static const int dx[2][LGA_DIRECTIONS] = {{1, 0, -1, -1, -1, 0}, {1, 1, 0, -1, 0, 1}};
     static const int dy[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
     const uint32_t columns = lattice->columns, rows = lattice->rows;
-    assert(rows % 2 == 0);
-    for (uint32_t y = 0; y < rows; y++) {
-        for (uint32_t x = 0; x < columns; x++) {
-            for (int d = 0; d < LGA_DIRECTIONS; d++) {
-                const uint32_t tx = (x + columns + (uint32_t)dx[y & 1][d]) % columns;
-                const uint32_t ty = (y + rows + (uint32_t)dy[d]) % rows;
-                beside[y * columns + x][d] = ty * columns + tx;
-            }
-        }
+    const uint32_t x = site % columns, y = site / columns;
+    const uint32_t tx = (x + columns + (uint32_t)dx[y & 1][direction]) % columns;
+    const uint32_t ty = (y + rows + (uint32_t)dy[direction]) % rows;
+    return ty * columns + tx;
+}
+
+void lga_lattice_join(const struct lga_lattice *lattice, uint32_t (*beside)[LGA_DIRECTIONS])
+{
+    assert(lattice->rows % 2 == 0);
+    for (uint32_t n = 0; n < lattice->rows * lattice->columns; n++) {
+        for (int d = 0; d < LGA_DIRECTIONS; d++) beside[n][d] = lga_lattice_beside(lattice, n, d);
     }
 }
 
@@ -102,7 +104,7 @@ static void shortest(const struct lga_lattice *lattice, double *dx, double *dy)
     if (lattice->wraps_y) *dy -= height * round(*dy / height);
 }
 
-static double distance_to(const struct lga_lattice *lattice, uint32_t site, double x, double y)
+double lga_lattice_distance(const struct lga_lattice *lattice, uint32_t site, double x, double y)
 {
     double nx, ny;
     lga_lattice_position(lattice, site, &nx, &ny);
@@ -130,7 +132,7 @@ uint32_t lga_lattice_nearest(const struct lga_lattice *lattice, double x, double
         const uint32_t row = wrapped(floor(v) + k, lattice->rows);
         const uint32_t column = wrapped(round(u - 0.5 * (row & 1)), lattice->columns);
         const uint32_t site = row * lattice->columns + column;
-        const double distance = distance_to(lattice, site, x + lattice->x0, y + lattice->y0);
+        const double distance = lga_lattice_distance(lattice, site, x + lattice->x0, y + lattice->y0);
         if (distance >= least) continue;
         least = distance;
         best = site;
@@ -164,39 +166,42 @@ static enum lga_kind sink_kind(const struct scene *scene, double x, double y)
     return LGA_FLUID;
 }
 
-static void draw_wall(const struct lga_lattice *lattice, const struct wall *wall, uint8_t *kind)
+static void draw_wall(const struct lga_lattice *lattice, const struct wall *wall, uint32_t row,
+                      uint8_t *kind)
 {
     const double depth = reach * lattice->spacing;
-    double x0, y0, x1, y1;
+    double x0, y0, x1, y1, x, y;
     wall_bounds(wall, &x0, &y0, &x1, &y1);
-    for (uint32_t n = 0; n < lattice->rows * lattice->columns; n++) {
-        double x, y;
-        lga_lattice_position(lattice, n, &x, &y);
+    lga_lattice_position(lattice, row * lattice->columns, &x, &y);
+    const bool passes = lattice->turned ? x >= x0 - depth && x <= x1 + depth
+                                        : y >= y0 - depth && y <= y1 + depth;
+    for (uint32_t n = 0; passes && n < lattice->columns; n++) {
+        lga_lattice_position(lattice, row * lattice->columns + n, &x, &y);
         if (x < x0 - depth || x > x1 + depth || y < y0 - depth || y > y1 + depth) continue;
         if (wall_nearest(wall, x, y).distance <= depth) kind[n] = LGA_WALL;
     }
 }
 
 void lga_lattice_rasterise(const struct lga_lattice *lattice, const struct scene *scene, double t,
-                           uint8_t *kind)
+                           uint32_t row, uint8_t *kind)
 {
-    for (uint32_t n = 0; n < lattice->rows * lattice->columns; n++) {
+    for (uint32_t n = 0; n < lattice->columns; n++) {
         double x, y;
-        lga_lattice_position(lattice, n, &x, &y);
+        lga_lattice_position(lattice, row * lattice->columns + n, &x, &y);
         kind[n] = (uint8_t)border_kind(lattice, scene, x, y);
         if (kind[n] == LGA_FLUID) kind[n] = (uint8_t)sink_kind(scene, x, y);
     }
     for (uint32_t w = 0; w < scene->wall_count; w++) {
         if (scene->walls[w].border || !wall_present(&scene->walls[w], t)) continue;
         const struct wall wall = wall_at(&scene->walls[w], t);
-        draw_wall(lattice, &wall, kind);
+        draw_wall(lattice, &wall, row, kind);
     }
 }
 
 /* Is node `site` on the same side as (x, y) of every wall that is near to (x, y)?  Seen from the
  * wall's nearest point, that is the half plane into which its normal points. */
-static bool same_side(const struct lga_lattice *lattice, const struct scene *scene, double t,
-                      uint32_t site, double x, double y)
+bool lga_lattice_same_side(const struct lga_lattice *lattice, const struct scene *scene, double t,
+                           uint32_t site, double x, double y)
 {
     double dx, dy;
     lga_lattice_position(lattice, site, &dx, &dy);
@@ -211,27 +216,4 @@ static bool same_side(const struct lga_lattice *lattice, const struct scene *sce
         if (near.distance + near.nx * dx + near.ny * dy <= 0) return false;
     }
     return true;
-}
-
-uint32_t lga_lattice_home(const struct lga_lattice *lattice, const struct scene *scene, double t,
-                          const uint8_t *kind, double x, double y)
-{
-    enum { RANGE = 3 };                         /* rows and columns to each side that are tried */
-    const uint32_t centre = lga_lattice_nearest(lattice, x, y);
-    if (kind[centre] == LGA_FLUID && same_side(lattice, scene, t, centre, x, y)) return centre;
-    const double row0 = centre / lattice->columns, column0 = centre % lattice->columns;
-    uint32_t best = LGA_NONE;
-    double least = INFINITY;
-    for (int j = -RANGE; j <= RANGE; j++) {
-        for (int i = -RANGE; i <= RANGE; i++) {
-            const uint32_t site = wrapped(row0 + j, lattice->rows) * lattice->columns
-                                + wrapped(column0 + i, lattice->columns);
-            const double distance = distance_to(lattice, site, x, y);
-            if (kind[site] != LGA_FLUID || distance >= least) continue;
-            if (!same_side(lattice, scene, t, site, x, y)) continue;
-            best = site;
-            least = distance;
-        }
-    }
-    return best;
 }

@@ -1,145 +1,71 @@
-/* lga_step.c - one tick of the lattice gas: collide, fall, let in, stream.
+/* lga_step.c - one tick of a lattice gas, and the streaming that all of them share.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Every pass reads what the pass before wrote and writes only its own node, and every random
- * number has a name (seed, tick, site, draw), so the result depends neither on the order of the
- * loops nor on the number of threads.
- *
- * How many grains a node holds changes in streaming only.  So `load`, counted at the start of the
- * tick, tells in every later pass whether a node is full.
+ * Streaming goes by links and reads the lattice before it only.  No two grains can come into one
+ * slot: a grain that a wall sends back (or reflects) takes a slot whose only other source is that
+ * wall.
  */
-#include "model/lga/lga.h"
+#include "model/lga/lga_bits.h"
 
 #include "base/rng.h"
 
 #include <assert.h>
-#include <math.h>
 
-enum { LOOP_SITES_MIN = 1 << 16 };      /* below this a second thread costs more than it brings */
-
-/* The random numbers of a node in a tick; those of one direction follow each other. */
-enum draw {
-    DRAW_COLUMN, DRAW_OUTCOME, DRAW_GAIN, DRAW_FALL, DRAW_SIDE, DRAW_FRICTION, DRAW_TURN,
-    DRAW_MOVER, DRAW_TURN_SIDE, DRAW_ADMIT, DRAW_STOP = DRAW_ADMIT + LGA_DIRECTIONS
-};
-
-static double draw(const struct lga *lga, uint32_t site, int which)
-{
-    return rng_unit(rng_keyed(lga->seed, lga->ticks, site, (uint64_t)which));
-}
-
-static bool chance(const struct lga *lga, uint32_t site, int which, double probability)
-{
-    if (probability <= 0) return false;
-    return probability >= 1 || draw(lga, site, which) < probability;
-}
+enum { DRAW_STOP = 32 };                /* past the draws of the rules */
 
 static unsigned bit(int direction) { return 1u << direction; }
 static int reverse(int direction) { return (direction + 3) % LGA_DIRECTIONS; }
+static int turned(int direction, int by) { return (direction + by + 6) % LGA_DIRECTIONS; }
 
-static bool is_full(const struct lga *lga, uint32_t site)
+/* Where a wall with these blocked links reflects direction d to: like a mirror where it is flat
+ * ({a, a+1}) or the zigzag across the rows ({a, a+1, a+2}), back where it has no clear normal. */
+static int mirror(unsigned blocked, int d)
 {
-    return lga->kind[site] == LGA_WALL
-        || (lga->kind[site] == LGA_FLUID && lga->load[site] >= LGA_ROOM);
+    for (int a = 0; a < LGA_DIRECTIONS; a++) {
+        const unsigned flat = bit(a) | bit(turned(a, 1));
+        if (blocked == flat) return d == a ? turned(a, -2) : turned(a, 3);
+        if (blocked != (flat | bit(turned(a, 2)))) continue;
+        return d == a ? turned(a, -1) : d == turned(a, 1) ? turned(a, 4) : turned(a, 3);
+    }
+    return reverse(d);
 }
 
-/* Replaces (moving, rest) of a node by one of the outcomes of its collision. */
-static bool collide(struct lga *lga, uint32_t site)
+unsigned lga_step_mirrored(unsigned blocked, unsigned stuck, unsigned moving)
 {
-    const unsigned moving = lga->moving[site], rest = lga->rest[site];
-    if (moving == 0) return false;
-    const enum lga_column column = chance(lga, site, DRAW_COLUMN, lga->rule.inelastic);
-    const struct lga_case *entry = &lga->table->cases[column][moving][rest];
-    if (entry->count == 0) return false;
-    const struct lga_outcome *outcome = entry->outcome;
-    if (entry->count > 1) {
-        int left = (int)(LGA_WEIGHT * draw(lga, site, DRAW_OUTCOME));
-        while (left >= outcome->weight) left -= outcome++->weight;
-    }
-    if (outcome->rest < rest && !chance(lga, site, DRAW_GAIN, lga->rule.gain)) return false;
-    lga->moving[site] = outcome->moving;
-    lga->rest[site] = outcome->rest;
-    return true;
-}
-
-/* Gravity on a grain at rest.  H: it goes down to one of two sides; if the other side is full it
- * rolls, which friction may prevent unless the node has just been hit.  V: it goes straight down,
- * and rolls to one of two sides if that is full. */
-static void fall(struct lga *lga, uint32_t site)
-{
-    if (lga->rest[site] == 0 || !chance(lga, site, DRAW_FALL, lga->rule.fall)) return;
-    const uint32_t *beside = lga->beside[site];
-    const bool left = draw(lga, site, DRAW_SIDE) < 0.5;
-    int direction;
-    bool rolls;
-    if (lga->rule.vertical) {
-        rolls = is_full(lga, beside[3]);
-        direction = !rolls ? 3 : left ? 2 : 4;
-    } else {
-        direction = left ? 4 : 5;
-        rolls = is_full(lga, beside[left ? 5 : 4]);
-    }
-    if (is_full(lga, beside[direction]) || lga->moving[site] & bit(direction)) return;
-    if (rolls && !lga->hit[site] && chance(lga, site, DRAW_FRICTION, lga->rule.friction)) return;
-    lga->rest[site]--;
-    lga->moving[site] |= (uint8_t)bit(direction);
-}
-
-/* Gravity on one mover of the node, any of them: its path bends down.  H: 4 and 5 are drawn anew,
- * 1 -> 5 and 2 -> 4 keep the momentum along x. */
-static void bend(struct lga *lga, uint32_t site)
-{
-    static const int down_vertical[LGA_DIRECTIONS] = {3, 2, 3, 3, 3, 4};
-    static const int down_horizontal[LGA_DIRECTIONS] = {5, 5, 4, 4, -1, -1};
-    const unsigned moving = lga->moving[site];
-    if (moving == 0 || !chance(lga, site, DRAW_TURN, lga->rule.fall)) return;
-    int left = (int)(draw(lga, site, DRAW_MOVER) * __builtin_popcount(moving)), from = 0;
-    while (!(moving & bit(from)) || left-- > 0) from++;
-    int to = lga->rule.vertical ? down_vertical[from] : down_horizontal[from];
-    if (to < 0) to = draw(lga, site, DRAW_TURN_SIDE) < 0.5 ? 4 : 5;
-    if (moving & bit(to) || is_full(lga, lga->beside[site][to])) return;
-    lga->moving[site] = (uint8_t)((moving & ~bit(from)) | bit(to));
-}
-
-/* Which of the movers that point here may come.  Two that meet head-on on a link always swap; of
- * the others a random subset, as many as there is room for: sand must dilate to flow. */
-static unsigned admit(const struct lga *lga, uint32_t site)
-{
-    unsigned arriving = 0, swapping = 0;
-    for (int d = 0; d < LGA_DIRECTIONS; d++) {
-        const uint32_t from = lga->beside[site][reverse(d)];
-        if (lga->kind[from] != LGA_FLUID || !(lga->moving[from] & bit(d))) continue;
-        arriving |= bit(d);
-        if (lga->moving[site] & bit(reverse(d))) swapping |= bit(d);
-    }
-    if (!lga->rule.gravity) return arriving;
-    int waiting = __builtin_popcount(arriving & ~swapping);
-    int room = LGA_ROOM - lga->load[site];
-    if (waiting <= room) return arriving;
-    unsigned admitted = swapping;
-    for (int d = 0; d < LGA_DIRECTIONS && room > 0; d++) {
-        if (!(arriving & ~swapping & bit(d))) continue;
-        if (draw(lga, site, DRAW_ADMIT + d) * waiting-- < room) {
-            admitted |= bit(d);
-            room--;
-        }
-    }
-    return admitted;
+    for (int d = 0; d < LGA_DIRECTIONS; d++) if (stuck & bit(d)) moving &= ~bit(reverse(d));
+    for (int d = 0; d < LGA_DIRECTIONS; d++) if (stuck & bit(d)) moving |= bit(mirror(blocked, d));
+    return moving;
 }
 
 struct streamed { uint64_t left, refused; };
 
+/* A grain that cannot leave its node in direction d stops there, or not. */
+static bool stops(struct lga *lga, uint32_t site, int d, unsigned rest)
+{
+    const double stop = lga->rule.wall_stop;
+    if (lga->rule.method == LGA_GMLG) {
+        if (rest >= LGA_ROOM || stop <= 0) return false;
+        return stop >= 1 || rng_unit(rng_keyed(lga->seed, lga->ticks, site, DRAW_STOP + (uint64_t)d))
+                            < stop;
+    }
+    if (!lga->heap || d < 4 || !lga_sand_die(lga, LGA_DIE_PLATE, site)) return false;
+    lga->heap[site] = true;
+    return true;
+}
+
 /* The node after streaming: who was let in, and those of its own movers that could not leave:
- * they stop or bounce back.  The slot of a grain that bounces back is free, because whoever could
- * have come through it would have met that grain head-on, and they would have swapped. */
+ * they stop, bounce back or are mirrored.  A grain that is not let in bounces back into a free
+ * slot, because whoever could have come through it would have met that grain head-on, and they
+ * would have swapped. */
 static struct streamed stream(struct lga *lga, uint32_t site)
 {
     struct streamed sum = {0};
-    unsigned next = lga->admitted[site], rest = lga->rest[site];
+    unsigned next = lga->admitted[site], rest = lga->rest[site], blocked = 0, stuck = 0;
     for (int d = 0; d < LGA_DIRECTIONS; d++) {
-        if (!(lga->moving[site] & bit(d))) continue;
         const uint32_t to = lga->beside[site][d];
+        if (lga->kind[to] == LGA_WALL) blocked |= bit(d);
+        if (!(lga->moving[site] & bit(d))) continue;
         if (lga->kind[to] == LGA_SINK) {
             sum.left++;
             continue;
@@ -148,11 +74,18 @@ static struct streamed stream(struct lga *lga, uint32_t site)
             if (lga->admitted[to] & bit(d)) continue;
             sum.refused++;
         }
-        if (rest < LGA_ROOM && chance(lga, site, DRAW_STOP + d, lga->rule.wall_stop)) {
+        if (stops(lga, site, d, rest)) {
             rest++;
         } else {
             assert(!(next & bit(reverse(d))));
             next |= bit(reverse(d));
+            if (lga->kind[to] == LGA_WALL) stuck |= bit(d);
+        }
+    }
+    if (stuck && lga->rule.method != LGA_GMLG) {
+        const bool plate = lga->heap && blocked == (bit(4) | bit(5));
+        if (plate || lga_sand_die(lga, LGA_DIE_MIRROR, site)) {
+            next = lga_step_mirrored(blocked, stuck, next);
         }
     }
     lga->moving_next[site] = (uint8_t)next;
@@ -167,29 +100,11 @@ static void swap(uint8_t **a, uint8_t **b)
     *b = kept;
 }
 
-void lga_step(struct lga *lga)
+static void stream_all(struct lga *lga)
 {
     const uint32_t sites = lga->sites;
-    const bool gravity = lga->rule.gravity;
-    uint64_t collisions = 0, left = 0, refused = 0;
-    #pragma omp parallel for if (sites >= LOOP_SITES_MIN)
-    for (uint32_t n = 0; n < sites; n++) {
-        lga->load[n] = (uint8_t)(lga->rest[n] + __builtin_popcount(lga->moving[n]));
-    }
-    #pragma omp parallel for reduction(+ : collisions) if (sites >= LOOP_SITES_MIN)
-    for (uint32_t n = 0; n < sites; n++) {
-        if (lga->kind[n] != LGA_FLUID || lga->load[n] == 0) continue;
-        lga->hit[n] = lga->moving[n] != 0;
-        collisions += collide(lga, n);
-        if (!gravity) continue;
-        fall(lga, n);
-        bend(lga, n);
-    }
-    #pragma omp parallel for if (sites >= LOOP_SITES_MIN)
-    for (uint32_t n = 0; n < sites; n++) {
-        lga->admitted[n] = lga->kind[n] == LGA_FLUID ? (uint8_t)admit(lga, n) : 0;
-    }
-    #pragma omp parallel for reduction(+ : left, refused) if (sites >= LOOP_SITES_MIN)
+    uint64_t left = 0, refused = 0;
+    #pragma omp parallel for reduction(+ : left, refused) if (sites >= LGA_LOOP_MIN)
     for (uint32_t n = 0; n < sites; n++) {
         if (lga->kind[n] != LGA_FLUID) {
             lga->moving_next[n] = lga->moving[n];       /* trapped: waits until it is released */
@@ -202,9 +117,20 @@ void lga_step(struct lga *lga)
     }
     swap(&lga->moving, &lga->moving_next);
     swap(&lga->rest, &lga->rest_next);
-    lga->collisions += collisions;
     lga->grains_out += left;
     lga->refused += refused;
+}
+
+void lga_step(struct lga *lga)
+{
+    if (lga->bits) {
+        lga_bits_step(lga);
+        return;
+    }
+    if (lga->rule.method == LGA_GMLG) lga_gmlg_collide(lga);
+    else lga_sand_collide(lga);
+    stream_all(lga);
+    if (lga->heap) lga_sand_settle(lga);
     lga->ticks++;
 }
 
@@ -213,23 +139,34 @@ double lga_step_time(const struct lga *lga)
     return lga->base_time + (double)(lga->ticks - lga->base_ticks) * lga->tick;
 }
 
-bool lga_step_allocate(struct lga *lga)
+static bool allocate_plain(struct lga *lga)
 {
     struct arena *arena = &lga->arena;
-    const bool done = arena_array(arena, &lga->table, 1)
-        && arena_array(arena, &lga->kind, lga->sites)
+    const bool gmlg = lga->rule.method == LGA_GMLG;
+    const bool done = arena_array(arena, &lga->kind, lga->sites)
         && arena_array(arena, &lga->moving, lga->sites)
         && arena_array(arena, &lga->rest, lga->sites)
         && arena_array(arena, &lga->load, lga->sites)
         && arena_array(arena, &lga->admitted, lga->sites)
-        && arena_array(arena, &lga->hit, lga->sites)
+        && arena_array(arena, &lga->hit, gmlg ? lga->sites : 0)
         && arena_array(arena, &lga->moving_next, lga->sites)
         && arena_array(arena, &lga->rest_next, lga->sites)
-        && arena_array(arena, &lga->beside, lga->sites)
-        && arena_array(arena, &lga->queue, lga->sites)
-        && arena_array(arena, &lga->stamp, lga->sites);
+        && arena_array(arena, &lga->beside, lga->sites);
     if (!done) return false;
-    lga_table_fill(lga->table);
     lga_lattice_join(&lga->lattice, lga->beside);
-    return true;
+    return gmlg || lga_sand_allocate(lga);
+}
+
+bool lga_step_allocate(struct lga *lga)
+{
+    struct arena *arena = &lga->arena;
+    lga->words = lga_dice_words(lga->lattice.columns);
+    lga->dice = lga_dice_of(&lga->rule);
+    lga->simd = lga_dice_simd();
+    lga->queue_length = lga->sites < LGA_QUEUE ? lga->sites : LGA_QUEUE;
+    if (!arena_array(arena, &lga->table, 1) || !arena_array(arena, &lga->queue, lga->queue_length)
+        || !arena_array(arena, &lga->seen, lga->sites / 64 + 1)) return false;
+    lga_table_fill(lga->table);
+    const bool fast = lga->rule.method == LGA_FHP2 && !lga->plain;
+    return fast ? lga_bits_allocate(lga) : allocate_plain(lga);
 }

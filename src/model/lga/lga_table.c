@@ -85,6 +85,24 @@ static void fill_inelastic(struct lga_case *entry, unsigned moving, int rest)
     if (entry->count == 1 && entry->outcome[0].moving == moving) entry->count = 0;
 }
 
+/* At most one rest grain goes into a collision.  The lossy column stops pairs and triples, with
+ * more rest grains than a node may keep.  Of a pair's two ways the first turns it by +60 degrees. */
+static void fill_sand(struct lga_case *entry, bool lossy, unsigned moving, int rest)
+{
+    int present = 0;
+    for (int i = 0; i < 3; i++) present += moving == pair(i);
+    if (lossy && (present || is_triple(moving))) {
+        add(entry, 0, rest + __builtin_popcount(moving), LGA_WEIGHT);
+        return;
+    }
+    const unsigned split_by = bit(0) | bit(2);
+    fill_elastic(entry, moving, rest);
+    /* A merger would put a second grain to rest. */
+    for (int i = 0; i < LGA_DIRECTIONS && rest == 1; i++) {
+        if (moving == ((split_by << i | split_by >> (6 - i)) & 0x3f)) entry->count = 0;
+    }
+}
+
 void lga_table_fill(struct lga_table *table)
 {
     *table = (struct lga_table){0};
@@ -92,6 +110,10 @@ void lga_table_fill(struct lga_table *table)
         for (int rest = 0; rest <= LGA_ROOM; rest++) {
             fill_elastic(&table->cases[LGA_ELASTIC][moving][rest], moving, rest);
             fill_inelastic(&table->cases[LGA_INELASTIC][moving][rest], moving, rest);
+        }
+        for (int rest = 0; rest <= 1; rest++) {
+            fill_sand(&table->sand[LGA_ELASTIC][moving][rest], false, moving, rest);
+            fill_sand(&table->sand[LGA_INELASTIC][moving][rest], true, moving, rest);
         }
     }
 }

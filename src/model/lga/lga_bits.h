@@ -1,0 +1,79 @@
+/* lga_bits.h - the fast form of a lattice gas: planes of bits, 64 nodes a word.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * A row of `columns` nodes is seven planes (six directions and the rest grain) of `words` words:
+ * node x is bit x / words of word x % words.  So the nodes to the left of a word's nodes are the
+ * word before it, and streaming is a load from the next address; only the ends of a row need a
+ * shift.  The state is kept once and changed in place: memory is seven bits a node and one for
+ * the walls.
+ */
+#ifndef LGA_BITS_H
+#define LGA_BITS_H
+
+#include "model/lga/lga.h"
+
+enum { LGA_PLANES = 7, LGA_RING = 5, LGA_RING_PLANES = LGA_PLANES + 1 };
+
+enum {
+    LGA_BITS_LOSS = 1, LGA_BITS_GRAVITY = 2, LGA_BITS_WALLS = 4, LGA_BITS_SINKS = 8,
+    LGA_BITS_HELD = 16,         /* grains caught by a wall wait inside it */
+    LGA_BITS_MIRROR = 32
+};
+
+struct lga_bits {
+    uint32_t words, stride;     /* of a plane of the state; of a row with a margin on each side */
+    uint32_t bands;             /* rows are shared out in so many parts */
+    uint64_t *planes;           /* [row][plane][word] */
+    uint64_t *wall;             /* [row][word], with margins */
+    uint64_t *sink;             /* [row][word]; NULL: none */
+    uint8_t  *kinds;            /* a row of them for each band, while walls are drawn */
+    uint64_t *rings;            /* rows after their collisions: [band][LGA_RING][plane][word] */
+    unsigned effects;
+};
+
+struct lga_row_collide {
+    uint32_t words, stride;
+    unsigned effects;
+    uint64_t key;               /* of the row's random words */
+    const struct lga_dice *dice;
+    const uint64_t *in;
+    uint64_t *out;
+    const uint64_t *wall, *wall_left, *wall_right;      /* here, and where a grain would fall */
+};
+
+struct lga_row_stream {
+    uint32_t words;
+    unsigned effects;
+    uint64_t *out;
+    const uint64_t *from[LGA_DIRECTIONS];       /* where the movers of a direction come from */
+    const uint64_t *wall_from[LGA_DIRECTIONS];  /* or the wall that sends others back */
+    const uint64_t *own[LGA_PLANES];
+    const uint64_t *wall, *sink;
+};
+
+/* One set of instructions; the index is LGA_BITS_LOSS | LGA_BITS_GRAVITY, or walls yes or no. */
+struct lga_kernel {
+    void (*roll)(const struct lga_dice *dice, uint64_t key, uint32_t words,
+                 uint64_t *const rows[LGA_DICE]);
+    uint64_t (*collide[4])(const struct lga_row_collide *row);
+    uint64_t (*collide_any)(const struct lga_row_collide *row);
+    uint64_t (*stream[2])(const struct lga_row_stream *row);
+    uint64_t (*stream_any)(const struct lga_row_stream *row);
+};
+
+bool lga_bits_allocate(struct lga *lga);
+void lga_bits_step(struct lga *lga);
+
+/* The kinds of a row's nodes; after the last row the walls' margins are to be joined. */
+void lga_bits_set_kinds(struct lga *lga, uint32_t row, const uint8_t *kind);
+void lga_bits_join_walls(struct lga *lga);
+void lga_bits_rasterise(struct lga *lga, double t);     /* all that from the scene */
+
+struct lga_node lga_bits_node(const struct lga *lga, uint32_t site);
+void lga_bits_set(struct lga *lga, uint32_t site, unsigned moving, unsigned rest);
+
+/* How many grains each plane of a row holds. */
+void lga_bits_sum(const struct lga *lga, uint32_t row, uint64_t sum[LGA_PLANES]);
+
+#endif

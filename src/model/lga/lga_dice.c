@@ -1,0 +1,67 @@
+/* lga_dice.c - the probabilities of the lattice gases, cut to binary fractions.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * A bit that is set with probability P / 2^k costs k random words for 64 nodes, one for each digit
+ * from the lowest that is not zero: "or" where the digit is 1, "and" where it is 0.  So a
+ * probability gets as few digits as leave it right within a thousandth of itself and of its
+ * complement, far less than the statistical error of any run, and certainty costs nothing.
+ */
+#include "model/lga/lga.h"
+
+#include <assert.h>
+#include <math.h>
+
+enum { DIGITS_MAX = 24 };
+
+static const double precision = 1e-3;
+
+struct lga_die lga_dice_die(double probability)
+{
+    assert(probability >= 0);
+    assert(probability <= 1);
+    const double allowed = precision * fmin(probability, 1 - probability);
+    for (int bits = 1; bits <= DIGITS_MAX; bits++) {
+        const double threshold = rint(ldexp(probability, bits));
+        if (threshold < 1 || threshold > ldexp(1, bits) - 1) continue;
+        if (bits < DIGITS_MAX && fabs(ldexp(threshold, -bits) - probability) > allowed) continue;
+        return (struct lga_die){(uint32_t)threshold, bits};
+    }
+    return (struct lga_die){probability > 0.5, 0};
+}
+
+struct lga_dice lga_dice_of(const struct lga_rule *rule)
+{
+    struct lga_dice dice = {0};
+    const bool sandpile = rule->method == LGA_SANDPILE, gravity = rule->gravity;
+    if (rule->method == LGA_GMLG) return dice;
+    dice.of[LGA_DIE_SIDE] = lga_dice_die(0.5);
+    dice.of[LGA_DIE_KICK] = lga_dice_die(rule->gain * (1 - rule->loss));
+    if (sandpile) dice.of[LGA_DIE_LOSS] = lga_dice_die(rule->loss);
+    if (gravity) dice.of[LGA_DIE_FALL] = lga_dice_die(rule->fall);
+    if (gravity) dice.of[LGA_DIE_FALL_SIDE] = lga_dice_die(0.5);
+    if (gravity && sandpile && rule->fly) {
+        dice.of[LGA_DIE_BEND] = lga_dice_die(rule->fall);
+        dice.of[LGA_DIE_BEND_SIDE] = lga_dice_die(0.5);
+    }
+    dice.of[LGA_DIE_MIRROR] = lga_dice_die(rule->smooth);
+    if (rule->heap) dice.of[LGA_DIE_PLATE] = lga_dice_die(rule->loss);
+    return dice;
+}
+
+/* Whole blocks.  Where that is more than the columns, there is room for the first one again. */
+uint32_t lga_dice_words(uint32_t columns)
+{
+    return (columns + 64 * LGA_LANES - 1) / (64 * LGA_LANES) * LGA_LANES;
+}
+
+enum lga_simd lga_dice_simd(void)
+{
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("popcnt")) {
+        return LGA_SIMD_AVX512;
+    }
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt")) return LGA_SIMD_AVX2;
+#endif
+    return LGA_SIMD_BASE;
+}

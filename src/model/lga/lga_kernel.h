@@ -1,0 +1,235 @@
+/* lga_kernel.h - the inner loops over words of nodes, written once and compiled for several sets
+ * of instructions: whoever includes this defines KERNEL (the names' ending), KERNEL_TARGET (an
+ * attribute) and KERNEL_WIDTH (words a vector).
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Work goes in blocks of LGA_LANES words, whatever the width of a vector, so that the random words
+ * of a node are the same on every machine.
+ */
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#define N(name) JOIN(name, KERNEL)
+#define PARTS (LGA_LANES / KERNEL_WIDTH)        /* vectors a block */
+#define INLINE KERNEL_TARGET static inline __attribute__((always_inline))
+
+typedef uint64_t N(vec) __attribute__((vector_size(8 * KERNEL_WIDTH), may_alias));
+typedef uint64_t N(loose) __attribute__((vector_size(8 * KERNEL_WIDTH), may_alias, aligned(8)));
+#define vec N(vec)
+
+INLINE vec N(load)(const uint64_t *words) { return *(const N(loose) *)words; }
+INLINE void N(store)(uint64_t *words, vec bits) { *(vec *)words = bits; }
+
+/* xoshiro256++ of Blackman and Vigna (2018), a stream for each word of a block. */
+struct N(stream) { vec a[PARTS], b[PARTS], c[PARTS], d[PARTS]; };
+
+INLINE void N(seed)(struct N(stream) *s, uint64_t key)
+{
+    uint64_t start[4][LGA_LANES] __attribute__((aligned(64)));
+    for (unsigned k = 0; k < 4 * LGA_LANES; k++) {
+        start[k / LGA_LANES][k % LGA_LANES] = rng_mix(key + (k + 1) * 0x9e3779b97f4a7c15u);
+    }
+    for (int p = 0; p < PARTS; p++) {
+        s->a[p] = N(load)(start[0] + p * KERNEL_WIDTH);
+        s->b[p] = N(load)(start[1] + p * KERNEL_WIDTH);
+        s->c[p] = N(load)(start[2] + p * KERNEL_WIDTH);
+        s->d[p] = N(load)(start[3] + p * KERNEL_WIDTH);
+    }
+}
+
+INLINE vec N(next)(struct N(stream) *s, int p)
+{
+    const vec a = s->a[p], b = s->b[p], sum = a + s->d[p];
+    const vec word = ((sum << 23) | (sum >> 41)) + a;
+    const vec c = s->c[p] ^ a, d = s->d[p] ^ b;
+    s->b[p] = b ^ c;
+    s->a[p] = a ^ d;
+    s->c[p] = c ^ (b << 17);
+    s->d[p] = (d << 45) | (d >> 19);
+    return word;
+}
+
+/* One block of bits, each set with the die's probability. */
+INLINE void N(roll)(struct N(stream) *s, struct lga_die die, vec out[PARTS])
+{
+    const uint64_t certain = die.bits == 0 && die.threshold ? UINT64_MAX : 0;
+    for (int p = 0; p < PARTS; p++) out[p] = (vec){0} | certain;
+    for (int k = 0; k < die.bits; k++) {
+        const bool digit = die.threshold >> k & 1;
+        for (int p = 0; p < PARTS; p++) {
+            const vec word = N(next)(s, p);
+            out[p] = digit ? out[p] | word : out[p] & word;
+        }
+    }
+}
+
+KERNEL_TARGET static void N(roll_row)(const struct lga_dice *dice, uint64_t key, uint32_t words,
+                                      uint64_t *const rows[LGA_DICE])
+{
+    struct N(stream) s;
+    N(seed)(&s, key);
+    for (uint32_t w = 0; w < words; w += LGA_LANES) {
+        for (int k = 0; k < LGA_DICE; k++) {
+            vec bits[PARTS];
+            if (!rows[k]) continue;
+            N(roll)(&s, dice->of[k], bits);
+            for (int p = 0; p < PARTS; p++) N(store)(rows[k] + w + p * KERNEL_WIDTH, bits[p]);
+        }
+    }
+}
+
+/* --- FHP-II --- */
+
+INLINE uint64_t N(count)(vec bits)
+{
+    uint64_t sum = 0;
+    for (int k = 0; k < KERNEL_WIDTH; k++) sum += (uint64_t)__builtin_popcountll(bits[k]);
+    return sum;
+}
+
+/* Collides the movers m and the rest grains *rest of a vector of nodes; the table is that of
+ * lga_table.c as logic.  Returns which nodes have changed. */
+INLINE vec N(collide)(vec m[6], vec *rest, vec side, vec kick)
+{
+    vec alone[6], none[3], both[3], turn[6];
+    const vec r = *rest;
+    for (int i = 0; i < 3; i++) {
+        alone[i] = m[i] & ~m[i + 3];
+        alone[i + 3] = m[i + 3] & ~m[i];
+        none[i] = ~(m[i] | m[i + 3]);
+        both[i] = m[i] & m[i + 3];
+    }
+    const vec triple = (alone[0] & alone[2] & alone[4]) | (alone[1] & alone[3] & alone[5]);
+    for (int i = 0; i < 3; i++) both[i] &= none[(i + 1) % 3] & none[(i + 2) % 3];
+    vec changed = triple, kicked = {0};
+    for (int i = 0; i < 6; i++) {
+        /* {i} with a rest grain -> {i-1, i+1} without, and its inverse */
+        const vec splits = alone[i] & none[(i + 1) % 3] & none[(i + 2) % 3] & r & kick;
+        const vec merges = alone[(i + 5) % 6] & alone[(i + 1) % 6] & none[i % 3] & ~r;
+        turn[i] = splits | merges;
+        kicked |= turn[i];
+    }
+    vec flip[3];
+    for (int i = 0; i < 3; i++) {
+        changed |= both[i];
+        flip[i] = both[i] | (side & both[(i + 2) % 3]) | (~side & both[(i + 1) % 3]) | triple;
+    }
+    for (int i = 0; i < 6; i++) {
+        m[i] ^= flip[i % 3] | turn[(i + 5) % 6] | turn[i] | turn[(i + 1) % 6];
+    }
+    *rest = r ^ kicked;
+    return changed | kicked;
+}
+
+/* Gravity, where `falls`: movers that rise turn down and keep their momentum along x, and a rest
+ * grain starts down, unless the slot is taken or a wall is in the way. */
+INLINE void N(fall)(vec m[6], vec *rest, vec falls, vec left, vec wall_left, vec wall_right)
+{
+    const vec right_bends = m[1] & ~m[5] & falls, left_bends = m[2] & ~m[4] & falls;
+    m[1] ^= right_bends;
+    m[5] ^= right_bends;
+    m[2] ^= left_bends;
+    m[4] ^= left_bends;
+    const vec starts = *rest & falls;
+    const vec goes_left = starts & left & ~m[4] & ~wall_left;
+    const vec goes_right = starts & ~left & ~m[5] & ~wall_right;
+    m[4] |= goes_left;
+    m[5] |= goes_right;
+    *rest &= ~(goes_left | goes_right);
+}
+
+INLINE uint64_t N(collide_effects)(const struct lga_row_collide *row, unsigned effects)
+{
+    const uint32_t words = row->words;
+    uint64_t collisions = 0;
+    struct N(stream) s;
+    N(seed)(&s, row->key);
+    for (uint32_t block = 0; block < words; block += LGA_LANES) {
+        vec side[PARTS], kick[PARTS], falls[PARTS], left[PARTS], mirror[PARTS];
+        N(roll)(&s, row->dice->of[LGA_DIE_SIDE], side);
+        if (effects & LGA_BITS_LOSS) N(roll)(&s, row->dice->of[LGA_DIE_KICK], kick);
+        if (effects & LGA_BITS_GRAVITY) N(roll)(&s, row->dice->of[LGA_DIE_FALL], falls);
+        if (effects & LGA_BITS_GRAVITY) N(roll)(&s, row->dice->of[LGA_DIE_FALL_SIDE], left);
+        if (effects & LGA_BITS_MIRROR) N(roll)(&s, row->dice->of[LGA_DIE_MIRROR], mirror);
+        for (int p = 0; p < PARTS; p++) {
+            const uint32_t w = block + (uint32_t)p * KERNEL_WIDTH;
+            vec m[6], r = N(load)(row->in + 6 * words + w);
+            const vec all = ~(vec){0};
+            for (uint32_t d = 0; d < 6; d++) m[d] = N(load)(row->in + d * words + w);
+            if (effects & LGA_BITS_HELD) {
+                const vec fluid = ~N(load)(row->wall + w);
+                for (int d = 0; d < 6; d++) m[d] &= fluid;
+                r &= fluid;
+            }
+            const vec hit = N(collide)(m, &r, side[p], effects & LGA_BITS_LOSS ? kick[p] : all);
+            collisions += N(count)(hit);
+            if (effects & LGA_BITS_GRAVITY) {
+                N(fall)(m, &r, falls[p], left[p], N(load)(row->wall_left + w),
+                        N(load)(row->wall_right + w));
+            }
+            for (uint32_t d = 0; d < 6; d++) N(store)(row->out + d * row->stride + w, m[d]);
+            N(store)(row->out + 6 * row->stride + w, r);
+            if (effects & LGA_BITS_MIRROR) N(store)(row->out + 7 * row->stride + w, mirror[p]);
+        }
+    }
+    return collisions;
+}
+
+INLINE uint64_t N(stream_effects)(const struct lga_row_stream *row, unsigned effects)
+{
+    const uint32_t words = row->words;
+    uint64_t left = 0;
+    for (uint32_t w = 0; w < words; w += KERNEL_WIDTH) {
+        vec wall = {0}, sink = {0};
+        if (effects & LGA_BITS_WALLS) wall = N(load)(row->wall + w);
+        if (effects & LGA_BITS_SINKS) sink = N(load)(row->sink + w);
+        for (uint32_t d = 0; d < 6; d++) {
+            vec m = N(load)(row->from[d] + w);
+            if (effects & LGA_BITS_WALLS) {
+                m |= N(load)(row->wall_from[d] + w) & N(load)(row->own[(d + 3) % 6] + w);
+                m &= ~wall;
+            }
+            if (effects & LGA_BITS_SINKS) {
+                left += N(count)(m & sink);
+                m &= ~sink;
+            }
+            if (effects & LGA_BITS_HELD) m |= wall & N(load)(row->out + d * words + w);
+            N(store)(row->out + d * words + w, m);
+        }
+        vec r = N(load)(row->own[6] + w);
+        if (effects & LGA_BITS_HELD) r |= wall & N(load)(row->out + 6 * words + w);
+        N(store)(row->out + 6 * words + w, r);
+    }
+    return left;
+}
+
+#define INSTANCE(kind, e) \
+    KERNEL_TARGET static uint64_t N(kind##_##e)(const struct lga_row_##kind *row) \
+    { return N(kind##_effects)(row, e); }
+INSTANCE(collide, 0) INSTANCE(collide, 1) INSTANCE(collide, 2) INSTANCE(collide, 3)
+INSTANCE(stream, 0) INSTANCE(stream, 4)
+/* What is rare (sinks, held grains, mirrors) is tested in the loop, on top of all else. */
+KERNEL_TARGET static uint64_t N(collide_any)(const struct lga_row_collide *row)
+{
+    return N(collide_effects)(row, row->effects);
+}
+KERNEL_TARGET static uint64_t N(stream_any)(const struct lga_row_stream *row)
+{
+    return N(stream_effects)(row, row->effects);
+}
+
+static const struct lga_kernel N(kernel) = {
+    N(roll_row), {N(collide_0), N(collide_1), N(collide_2), N(collide_3)}, N(collide_any),
+    {N(stream_0), N(stream_4)}, N(stream_any)
+};
+
+#undef INSTANCE
+#undef vec
+#undef INLINE
+#undef PARTS
+#undef N
+#undef JOIN
+#undef JOIN_
+#undef KERNEL
+#undef KERNEL_TARGET
+#undef KERNEL_WIDTH

@@ -1,0 +1,208 @@
+/* lga_sand.c - fhp2 and sandpile in the plain form: node by node, by the table of collisions.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Collisions of the sandpile may leave more than one rest grain on a node; then all but one walk at
+ * random until each finds a node without.  The walks go one after the other in the order of the
+ * nodes where they start, so that the result depends on nothing else.  Gravity reads the lattice as
+ * it is after that.
+ */
+#include "model/lga/lga.h"
+
+#include "base/rng.h"
+
+#include <assert.h>
+
+enum { HOPS_MAX = 1 << 14 };            /* of a walk; then the grain flies on from where it is */
+enum { DRAW_MOVER = 1 << 16, DRAW_WALK };
+
+static unsigned bit(int direction) { return 1u << direction; }
+
+bool lga_sand_die(const struct lga *lga, enum lga_die_kind kind, uint32_t site)
+{
+    const uint64_t *bits = lga->rolled[kind];
+    if (!bits) return lga->dice.of[kind].threshold;
+    const uint32_t row = site / lga->lattice.columns, x = site % lga->lattice.columns;
+    return bits[(size_t)row * lga->words + x % lga->words] >> (x / lga->words) & 1;
+}
+
+static void roll(struct lga *lga)
+{
+    const uint32_t rows = lga->lattice.rows;
+    #pragma omp parallel for if (lga->sites >= LGA_LOOP_MIN)
+    for (uint32_t row = 0; row < rows; row++) {
+        uint64_t *out[LGA_DICE];
+        for (int k = 0; k < LGA_DICE; k++) {
+            out[k] = lga->rolled[k] ? lga->rolled[k] + (size_t)row * lga->words : NULL;
+        }
+        lga_dice_roll(&lga->dice, lga->simd, lga->seed, lga->ticks, row, lga->words, out);
+    }
+}
+
+/* Replaces (moving, rest) of a node by the outcome of its collision. */
+static bool collide(struct lga *lga, uint32_t site)
+{
+    const unsigned moving = lga->moving[site], rest = lga->rest[site];
+    assert(rest <= 1);
+    const bool loss = lga_sand_die(lga, LGA_DIE_LOSS, site);
+    const struct lga_case *entry = &lga->table->sand[loss][moving][rest];
+    if (entry->count == 0) return false;
+    const bool second = entry->count > 1 && !lga_sand_die(lga, LGA_DIE_SIDE, site);
+    const struct lga_outcome *outcome = &entry->outcome[second];
+    if (outcome->rest < rest && !lga_sand_die(lga, LGA_DIE_KICK, site)) return false;
+    lga->moving[site] = outcome->moving;
+    lga->rest[site] = outcome->rest;
+    return true;
+}
+
+/* One rest grain leaves its node and walks until it finds a node without.  If it finds none it
+ * takes off again: a collision has just left slots free. */
+static void walk(struct lga *lga, uint32_t start, uint64_t *draws, bool heap)
+{
+    uint32_t site = start;
+    lga->rest[start]--;
+    for (uint32_t hop = 0; hop < HOPS_MAX; hop++) {
+        const uint64_t word = rng_keyed(lga->seed, lga->ticks, start, DRAW_WALK + (*draws)++);
+        const uint32_t to = lga->beside[site][(int)(rng_unit(word) * LGA_DIRECTIONS)];
+        if (lga->kind[to] == LGA_WALL) continue;
+        site = to;
+        if (lga->kind[site] == LGA_SINK) {
+            lga->grains_out++;
+            return;
+        }
+        if (lga->rest[site] > 0) continue;
+        lga->rest[site] = 1;
+        if (heap) lga->heap[site] = true;
+        return;
+    }
+    const unsigned taken = lga->moving[start];
+    if (taken + 1 < LGA_STATES) lga->moving[start] = (uint8_t)(taken | (taken + 1));
+    else lga->rest[start]++;
+}
+
+static void spread(struct lga *lga, uint32_t site, bool heap)
+{
+    uint64_t draws = heap ? 1u << 20 : 0;
+    for (int surplus = lga->rest[site] - 1; surplus > 0; surplus--) walk(lga, site, &draws, heap);
+}
+
+static int downward(const struct lga *lga, enum lga_die_kind kind, uint32_t site)
+{
+    return lga_sand_die(lga, kind, site) ? 4 : 5;
+}
+
+/* FHP-II: movers that rise turn down and keep their momentum along x; a rest grain starts down. */
+static void fall_gas(struct lga *lga, uint32_t site)
+{
+    unsigned moving = lga->moving[site];
+    if (!lga_sand_die(lga, LGA_DIE_FALL, site)) return;
+    if ((moving & bit(1)) && !(moving & bit(5))) moving ^= bit(1) | bit(5);
+    if ((moving & bit(2)) && !(moving & bit(4))) moving ^= bit(2) | bit(4);
+    const int d = downward(lga, LGA_DIE_FALL_SIDE, site);
+    if (lga->rest[site] && !(moving & bit(d)) && lga->kind[lga->beside[site][d]] != LGA_WALL) {
+        lga->rest[site]--;
+        moving |= bit(d);
+    }
+    lga->moving[site] = (uint8_t)moving;
+}
+
+enum { LOAD_RESTS = 1, LOAD_MOVES = 2 };        /* what `load` tells of a node here */
+
+/* Sandpile: a rest grain starts down if the node there has none. */
+static void fall_sand(struct lga *lga, uint32_t site)
+{
+    if (!lga->rest[site] || !lga_sand_die(lga, LGA_DIE_FALL, site)) return;
+    const int d = downward(lga, LGA_DIE_FALL_SIDE, site);
+    const uint32_t to = lga->beside[site][d];
+    const unsigned forbidden = lga->rule.strict ? LOAD_RESTS | LOAD_MOVES : LOAD_RESTS;
+    if (lga->kind[to] == LGA_WALL || lga->moving[site] & bit(d)) return;
+    if (lga->kind[to] == LGA_FLUID && lga->load[to] & forbidden) return;
+    lga->rest[site]--;
+    lga->moving[site] |= (uint8_t)bit(d);
+    if (lga->heap) lga->heap[site] = false;
+}
+
+/* Sandpile: one of the movers bends down. */
+static void bend_sand(struct lga *lga, uint32_t site)
+{
+    static const int down[LGA_DIRECTIONS] = {5, 5, 4, 4, -1, -1};
+    const unsigned moving = lga->moving[site];
+    if (moving == 0 || !lga_sand_die(lga, LGA_DIE_BEND, site)) return;
+    const double u = rng_unit(rng_keyed(lga->seed, lga->ticks, site, DRAW_MOVER));
+    int left = (int)(u * __builtin_popcount(moving)), from = 0;
+    while (!(moving & bit(from)) || left-- > 0) from++;
+    const int to = down[from] < 0 ? downward(lga, LGA_DIE_BEND_SIDE, site) : down[from];
+    const uint32_t below = lga->beside[site][to];
+    if (moving & bit(to) || (lga->kind[below] == LGA_FLUID && lga->load[below] & LOAD_RESTS)) return;
+    lga->moving[site] = (uint8_t)((moving & ~bit(from)) | bit(to));
+}
+
+/* Everything that points here comes. */
+static unsigned arriving(const struct lga *lga, uint32_t site)
+{
+    unsigned sum = 0;
+    for (int d = 0; d < LGA_DIRECTIONS; d++) {
+        const uint32_t from = lga->beside[site][(d + 3) % LGA_DIRECTIONS];
+        if (lga->kind[from] == LGA_FLUID) sum |= lga->moving[from] & bit(d);
+    }
+    return sum;
+}
+
+void lga_sand_collide(struct lga *lga)
+{
+    const uint32_t sites = lga->sites;
+    const bool sandpile = lga->rule.method == LGA_SANDPILE;
+    uint64_t collisions = 0;
+    roll(lga);
+    #pragma omp parallel for reduction(+ : collisions) if (sites >= LGA_LOOP_MIN)
+    for (uint32_t n = 0; n < sites; n++) {
+        if (lga->kind[n] == LGA_FLUID && lga->moving[n]) collisions += collide(lga, n);
+    }
+    for (uint32_t n = 0; n < sites && sandpile; n++) {
+        if (lga->rest[n] > 1 && lga->kind[n] == LGA_FLUID) spread(lga, n, false);
+    }
+    #pragma omp parallel for if (sites >= LGA_LOOP_MIN)
+    for (uint32_t n = 0; n < sites; n++) {
+        lga->load[n] = (uint8_t)((lga->rest[n] ? LOAD_RESTS : 0)
+                                 | (lga->moving[n] ? LOAD_MOVES : 0));
+    }
+    #pragma omp parallel for if (sites >= LGA_LOOP_MIN)
+    for (uint32_t n = 0; n < sites; n++) {
+        if (!lga->rule.gravity || lga->kind[n] != LGA_FLUID || !lga->load[n]) continue;
+        if (!sandpile) fall_gas(lga, n);
+        else fall_sand(lga, n);
+        if (sandpile && lga->rule.fly) bend_sand(lga, n);
+    }
+    #pragma omp parallel for if (sites >= LGA_LOOP_MIN)
+    for (uint32_t n = 0; n < sites; n++) {
+        lga->admitted[n] = lga->kind[n] == LGA_FLUID ? (uint8_t)arriving(lga, n) : 0;
+    }
+    lga->collisions += collisions;
+}
+
+/* A mover that comes to the heap stops and stays with it; so does a rest grain that lies on two
+ * grains of the heap, or on the floor. */
+void lga_sand_settle(struct lga *lga)
+{
+    for (uint32_t n = 0; n < lga->sites; n++) {
+        if (lga->kind[n] != LGA_FLUID || !lga->heap[n]) continue;
+        lga->rest[n] = (uint8_t)(lga->rest[n] + __builtin_popcount(lga->moving[n]));
+        lga->moving[n] = 0;
+        spread(lga, n, true);
+    }
+    for (uint32_t n = 0; n < lga->sites; n++) {
+        if (lga->kind[n] != LGA_FLUID || !lga->rest[n]) continue;
+        const uint32_t left = lga->beside[n][4], right = lga->beside[n][5];
+        lga->heap[n] |= (lga->kind[left] == LGA_WALL || lga->heap[left])
+                     && (lga->kind[right] == LGA_WALL || lga->heap[right]);
+    }
+}
+
+bool lga_sand_allocate(struct lga *lga)
+{
+    const size_t words = (size_t)lga->lattice.rows * lga->words;
+    for (int k = 0; k < LGA_DICE; k++) {
+        if (!arena_array(&lga->arena, &lga->rolled[k], lga->dice.of[k].bits ? words : 0)) return false;
+    }
+    return arena_array(&lga->arena, &lga->heap, lga->rule.heap ? lga->sites : 0);
+}

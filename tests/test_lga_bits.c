@@ -1,0 +1,220 @@
+/* test_lga_bits.c - the fast form of the lattice gas is the plain form, bit for bit.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * The plain form goes node by node through the table of collisions, which test_lga_gas.c
+ * enumerates; here both start from the same lattice and take the same random bits.
+ */
+#include "check.h"
+#include "model/lga/lga_bits.h"
+
+#include <omp.h>
+
+/* What stands on the lattice. */
+enum ground { TORUS, BOX, PIPE, OBSTACLES, SINKS };
+
+struct trial {
+    uint32_t columns, rows;
+    enum ground ground;
+    struct lga_rule rule;
+};
+
+static uint64_t noise(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return *state >> 33;
+}
+
+static void make_kinds(const struct trial *trial, uint8_t *kind)
+{
+    uint64_t state = 7;
+    for (uint32_t y = 0; y < trial->rows; y++) {
+        for (uint32_t x = 0; x < trial->columns; x++) {
+            const bool side = x == 0 || x + 1 == trial->columns;
+            const bool end = y == 0 || y + 1 == trial->rows;
+            uint8_t *k = &kind[y * trial->columns + x];
+            *k = LGA_FLUID;
+            if (trial->ground == BOX || trial->ground == SINKS) *k = side || end ? LGA_WALL : *k;
+            if (trial->ground == PIPE) *k = side ? LGA_WALL : *k;
+            if (trial->ground == OBSTACLES) *k = noise(&state) % 5 == 0 ? LGA_WALL : *k;
+            if (trial->ground == SINKS && y > 3 && y < 7 && x > 8 && x < 20) *k = LGA_SINK;
+        }
+    }
+}
+
+static struct lga *make(const struct trial *trial, bool plain, enum lga_simd simd)
+{
+    struct lga *lga = calloc(1, sizeof *lga);
+    lga->lattice = (struct lga_lattice){.columns = trial->columns, .rows = trial->rows,
+                                        .spacing = 1, .along = 1, .across = 1};
+    lga->sites = trial->columns * trial->rows;
+    lga->rule = trial->rule;
+    lga->seed = 3;
+    lga->tick = 1;
+    lga->plain = plain;
+    lga->sinks = trial->ground == SINKS;
+    CHECK(lga_step_allocate(lga));
+    CHECK(plain == !lga->bits);
+    if (simd < lga->simd) lga->simd = simd;
+    uint8_t *kind = calloc(lga->sites, 1);
+    make_kinds(trial, kind);
+    if (plain) memcpy(lga->kind, kind, lga->sites);
+    for (uint32_t y = 0; !plain && y < trial->rows; y++) {
+        lga_bits_set_kinds(lga, y, kind + y * trial->columns);
+    }
+    if (!plain) lga_bits_join_walls(lga);
+    uint64_t state = 99;
+    for (uint32_t n = 0; n < lga->sites; n++) {
+        const unsigned moving = noise(&state) & noise(&state) & 0x3f, rest = noise(&state) & 1;
+        if (kind[n] == LGA_FLUID) lga_node_set(lga, n, moving, rest);
+    }
+    free(kind);
+    return lga;
+}
+
+static void unmake(struct lga *lga)
+{
+    arena_free(&lga->arena);
+    free(lga);
+}
+
+static uint64_t mass(const struct lga *lga)
+{
+    uint64_t sum = 0;
+    for (uint32_t n = 0; n < lga->sites; n++) sum += lga_node_load(lga, n);
+    return sum;
+}
+
+static void check_equal(const struct lga *a, const struct lga *b)
+{
+    for (uint32_t n = 0; n < a->sites; n++) {
+        const struct lga_node p = lga_node_get(a, n), q = lga_node_get(b, n);
+        if (p.moving == q.moving && p.rest == q.rest && p.kind == q.kind) continue;
+        fail_msg("%u x %u, tick %d, node %u: %02x %d, not %02x %d", a->lattice.columns,
+                 a->lattice.rows, (int)a->ticks, n, q.moving, q.rest, p.moving, p.rest);
+    }
+    CHECK(a->collisions == b->collisions);
+    CHECK(a->grains_out == b->grains_out);
+}
+
+static const struct lga_rule elastic = {.method = LGA_FHP2, .gain = 1};
+static const struct lga_rule lossy = {.method = LGA_FHP2, .gain = 1, .loss = 0.3};
+static const struct lga_rule heavy = {.method = LGA_FHP2, .gain = 1, .gravity = true, .fall = 0.2};
+static const struct lga_rule all = {.method = LGA_FHP2, .gain = 0.9, .loss = 0.5, .gravity = true,
+                                    .fall = 0.1, .smooth = 0.4};
+static const struct lga_rule certain = {.method = LGA_FHP2, .gain = 0, .gravity = true, .fall = 1,
+                                        .smooth = 1};
+
+static void test_bits_and_bytes_make_the_same_lattice(void **unused)
+{
+    (void)unused;
+    /* Widths below, at and above a block of words, with and without a column to spare. */
+    const struct trial trials[] = {
+        {512, 6, TORUS, elastic}, {513, 4, TORUS, elastic}, {100, 8, TORUS, all},
+        {8, 10, TORUS, lossy}, {2, 2, TORUS, all}, {1024, 4, PIPE, all}, {63, 20, PIPE, heavy},
+        {64, 20, PIPE, lossy}, {65, 20, BOX, all}, {700, 10, BOX, certain}, {100, 30, OBSTACLES, all},
+        {512, 12, OBSTACLES, lossy}, {40, 30, SINKS, all}, {512, 10, SINKS, heavy},
+        {120, 30, OBSTACLES, certain},
+    };
+    for (size_t k = 0; k < sizeof trials / sizeof *trials; k++) {
+        struct lga *plain = make(&trials[k], true, LGA_SIMD_AVX512);
+        struct lga *fast = make(&trials[k], false, LGA_SIMD_AVX512);
+        const uint64_t start = mass(plain);
+        check_equal(plain, fast);
+        for (int t = 0; t < 60; t++) {
+            lga_step(plain);
+            lga_step(fast);
+            check_equal(plain, fast);
+            CHECK(mass(fast) + fast->grains_out == start);
+        }
+        CHECK(fast->collisions > 0);
+        if (trials[k].ground == SINKS) CHECK(fast->grains_out > 0);
+        unmake(plain);
+        unmake(fast);
+    }
+}
+
+static void test_every_set_of_instructions_and_number_of_threads_gives_the_same_bytes(void **unused)
+{
+    (void)unused;
+    const struct trial trial = {600, 40, OBSTACLES, all};
+    struct lga *reference = NULL;
+    for (int simd = 0; simd < LGA_SIMD_LEVELS; simd++) {
+        for (int threads = 1; threads <= 3; threads++) {
+            omp_set_num_threads(threads);
+            struct lga *lga = make(&trial, false, (enum lga_simd)simd);
+            for (int t = 0; t < 50; t++) lga_step(lga);
+            if (!reference) {
+                reference = lga;
+                continue;
+            }
+            check_equal(reference, lga);
+            CHECK(memcmp(reference->bits->planes, lga->bits->planes,
+                         LGA_PLANES * sizeof(uint64_t) * 40 * lga->words) == 0);
+            unmake(lga);
+        }
+    }
+    unmake(reference);
+    omp_set_num_threads(1);
+}
+
+static void test_a_grain_held_by_a_wall_waits(void **unused)
+{
+    (void)unused;
+    const struct trial trial = {100, 10, OBSTACLES, lossy};
+    struct lga *lga[2] = {make(&trial, true, LGA_SIMD_AVX512), make(&trial, false, LGA_SIMD_AVX512)};
+    for (int k = 0; k < 2; k++) {
+        for (uint32_t n = 0; n < lga[k]->sites; n++) {
+            if (lga_node_get(lga[k], n).kind == LGA_WALL) lga_node_set(lga[k], n, 0x2d, 1);
+        }
+        lga[k]->trapped = true;
+    }
+    for (int t = 0; t < 20; t++) {
+        for (int k = 0; k < 2; k++) lga_step(lga[k]);
+        check_equal(lga[0], lga[1]);
+    }
+    for (uint32_t n = 0; n < lga[1]->sites; n++) {
+        const struct lga_node node = lga_node_get(lga[1], n);
+        if (node.kind == LGA_WALL) CHECK(node.moving == 0x2d && node.rest == 1);
+    }
+    unmake(lga[0]);
+    unmake(lga[1]);
+}
+
+static void test_dice_fall_as_often_as_they_should(void **unused)
+{
+    (void)unused;
+    /* 2^21 bits a die: the share deviates by sqrt(p q / 2^21), of which four are allowed, and the
+     * cut of the probability by a thousandth of the smaller of p and q. */
+    enum { ROWS = 64, WORDS = 512 };
+    static const double probabilities[] = {0.5, 0.25, 0.3, 0.9, 0.05, 0.999, 1e-3};
+    static uint64_t bits[WORDS];
+    for (size_t k = 0; k < sizeof probabilities / sizeof *probabilities; k++) {
+        const double p = probabilities[k];
+        struct lga_dice dice = {{{0}}};
+        dice.of[LGA_DIE_LOSS] = lga_dice_die(p);
+        uint64_t *out[LGA_DICE] = {NULL};
+        out[LGA_DIE_LOSS] = bits;
+        double sum = 0;
+        for (uint32_t row = 0; row < ROWS; row++) {
+            lga_dice_roll(&dice, lga_dice_simd(), 1, 2, row, WORDS, out);
+            for (int w = 0; w < WORDS; w++) sum += __builtin_popcountll(bits[w]);
+        }
+        const double n = 64.0 * ROWS * WORDS, least = fmin(p, 1 - p);
+        CHECK_NEAR(sum / n, p, 4 * sqrt(p * (1 - p) / n) + 1e-3 * least);
+    }
+    CHECK(lga_dice_die(0.5).bits == 1);
+    CHECK(lga_dice_die(0).bits == 0 && lga_dice_die(0).threshold == 0);
+    CHECK(lga_dice_die(1).bits == 0 && lga_dice_die(1).threshold == 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_bits_and_bytes_make_the_same_lattice),
+        cmocka_unit_test(test_every_set_of_instructions_and_number_of_threads_gives_the_same_bytes),
+        cmocka_unit_test(test_a_grain_held_by_a_wall_waits),
+        cmocka_unit_test(test_dice_fall_as_often_as_they_should),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
