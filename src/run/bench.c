@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/rng.h"
 #include "bench_draw.h"
+#include "bench_lga.h"
 #include "draw/image.h"
 #include "measure/map.h"
 #include "model/simulation.h"
@@ -139,6 +140,19 @@ static bool measure_frame(const struct bench_case *which, struct bench_result *r
     return true;
 }
 
+/* Nodes of a lattice gas; the case is one of bench_lga's. */
+static bool measure_lga(const struct bench_case *which, struct bench_result *result,
+                        struct error *error)
+{
+    const struct bench_lga_case *what = bench_lga_list;
+    struct bench_lga_result measured;
+    while (what->name && strcmp(what->name, which->scene) != 0) what++;
+    if (!what->name) return error_set(error, "no lattice gas is called '%s'", which->scene);
+    if (!bench_lga(what, &measured, error)) return false;
+    *result = (struct bench_result){1e-9 * measured.updates, measured.cpu, measured.wall};
+    return true;
+}
+
 static const char gas_scene[] =
     "until = 1000.0; box = (0.0, 0.0, 280.0, 280.0);\n"
     "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";\n"
@@ -152,6 +166,14 @@ const struct bench_case bench_list[] = {
     {"lga-hourglass", "the hourglass with 20,000 grains as a lattice gas", "ticks/cpu-s", true,
      measure_model, .scene = "hourglass", .set = "grains.[0].radius=[0.018, 0.027]",
      .model = "lga", .amount = 3},
+    {"lga-fhp2", "FHP-II, 2048 x 2048 nodes, walls, gravity and dissipation", "G sites/cpu-s", true,
+     measure_lga, .scene = "fhp2"},
+    {"lga-fhp2-gas", "FHP-II, 2048 x 2048 nodes, nothing else", "G sites/cpu-s", true,
+     measure_lga, .scene = "fhp2-gas"},
+    {"lga-sandpile", "sandpile, 2048 x 2048 nodes, walls and gravity", "G sites/cpu-s", true,
+     measure_lga, .scene = "sandpile"},
+    {"lga-gmlg", "many rest grains, 1024 x 1024 nodes, walls and gravity", "G sites/cpu-s", true,
+     measure_lga, .scene = "gmlg"},
     {"map-1e6", "temperature map of 1,000,000 grains", "cpu-ms", false, measure_map, .amount = 1e6},
     {"png", "encoding a frame of 1280 x 720, level 1", "cpu-ms", false, measure_png,
      .amount = 1},
