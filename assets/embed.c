@@ -1,6 +1,7 @@
 /* embed.c - build tool: writes a C file that holds the files named on the command line.
  *
  *     embed OUT.c ROOT FILE...        FILE is stored under its path below ROOT
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include <stdio.h>
 #include <string.h>

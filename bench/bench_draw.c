@@ -1,5 +1,5 @@
-/* bench_draw.c - see bench_draw.h. */
-#include "bench_draw.h"
+/* bench_draw.c - see bench_draw.h.  SPDX-License-Identifier: GPL-3.0-or-later */
+#include "bench/bench_draw.h"
 
 #include "base/clock.h"
 #include "base/rng.h"

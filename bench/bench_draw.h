@@ -1,4 +1,5 @@
-/* bench_draw.h - what a frame costs, in processor milliseconds of all threads together. */
+/* bench_draw.h - what a frame costs, in processor milliseconds of all threads together.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef BENCH_DRAW_H
 #define BENCH_DRAW_H
 

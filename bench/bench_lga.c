@@ -4,7 +4,7 @@
  *
  * A square lattice filled at random, in a box or on a torus; the first ticks are not measured.
  */
-#include "bench_lga.h"
+#include "bench/bench_lga.h"
 
 #include "base/clock.h"
 #include "model/simulation.h"

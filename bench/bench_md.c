@@ -4,8 +4,9 @@
  * wide; copies of the tile, side by side, make the bed.  The first steps after that load the
  * springs again and are not measured.  Without friction the bed flows on a little, which wants a
  * wider skin.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#include "bench_md.h"
+#include "bench/bench_md.h"
 
 #include "base/clock.h"
 #include "model/simulation.h"
@@ -101,7 +102,7 @@ static bool measure(const struct bench_md_case *what, struct scene *scene, int t
         const double work = (double)what->steps * result->grains;
         const double rate = work / (clock_wall() - wall), core = work / (clock_process() - cpu);
         result->particle_steps[threads] = fmax(result->particle_steps[threads], rate);
-        if (threads == 1) result->per_core = fmax(result->per_core, core);
+        result->per_core[threads] = fmax(result->per_core[threads], core);
     }
     struct grains grains;
     if (done && grains_create(&grains, result->grains, 4 * result->grains, error)) {

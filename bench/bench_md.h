@@ -1,5 +1,6 @@
 /* bench_md.h - how fast soft discs are: a settled bed, the case that other DEM codes are measured
- * on too (gran/hooke/history of LAMMPS). */
+ * on too (gran/hooke/history of LAMMPS).
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef BENCH_MD_H
 #define BENCH_MD_H
 
@@ -18,8 +19,8 @@ struct bench_md_case {
 
 struct bench_md_result {
     uint32_t grains;
-    double particle_steps[3];   /* per second: [1] one thread, [2] two, wall time of the best */
-    double per_core;            /* particle-steps per processor second, one thread */
+    double particle_steps[3];   /* per second of wall time, the best: [1] one thread, [2] two */
+    double per_core[3];         /* per processor second of all threads */
     double contacts;            /* per grain, each counted at both */
     uint64_t tangential;        /* forces evaluated */
 };

@@ -1,5 +1,6 @@
-/* draw.c - prints what frames cost (bench_draw.h): ./draw [REPEATS] */
-#include "bench_draw.h"
+/* draw.c - prints what frames cost (bench_draw.h): ./draw [REPEATS]
+ * SPDX-License-Identifier: GPL-3.0-or-later */
+#include "bench/bench_draw.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#include "bench_lga.h"
+#include "bench/bench_lga.h"
 
 #include <math.h>
 #include <omp.h>

@@ -1,6 +1,7 @@
 /* md.c - prints how fast soft discs are (bench_md.h): ./bench_md [STEPS [TILES [DATA-FILE]]]
- * DATA-FILE: also writes the settled tile for LAMMPS. */
-#include "bench_md.h"
+ * DATA-FILE: also writes the settled tile for LAMMPS.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
+#include "bench/bench_md.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,10 +25,11 @@ int main(int argc, char **argv)
             fprintf(stderr, "%s\n", error.text);
             return EXIT_FAILED;
         }
-        printf("%u discs, %s: %.2f M particle-steps per core-second; wall: 1 thread %.2f, "
-               "2 threads %.2f; contacts %.2f, tangential forces %llu\n", r.grains,
-               friction ? "friction with springs" : "no friction", 1e-6 * r.per_core,
-               1e-6 * r.particle_steps[1], 1e-6 * r.particle_steps[2], r.contacts,
+        printf("%u discs, %s: %.2f M particle-steps per core-second on 1 thread, %.2f on 2; "
+               "wall: %.2f, %.2f; contacts %.2f, tangential forces %llu\n", r.grains,
+               friction ? "friction with springs" : "no friction", 1e-6 * r.per_core[1],
+               1e-6 * r.per_core[2], 1e-6 * r.particle_steps[1], 1e-6 * r.particle_steps[2],
+               r.contacts,
                (unsigned long long)r.tangential);
         fflush(stdout);
     }

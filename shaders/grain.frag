@@ -1,6 +1,7 @@
 #version 330 core
 // What a grain adds to a pixel: colour times coverage, and coverage.  The same formulas and
 // numbers as in src/draw/splat.c, which explains them.
+// SPDX-License-Identifier: GPL-3.0-or-later
 flat in vec3 disc;
 flat in vec3 disc_color;
 

@@ -1,5 +1,6 @@
 #version 330 core
 // One quad a grain, just large enough for its footprint; everything in pixels from the lower left.
+// SPDX-License-Identifier: GPL-3.0-or-later
 layout(location = 0) in vec3 grain;     // x, y, radius
 layout(location = 1) in vec4 color;
 

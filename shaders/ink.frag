@@ -1,6 +1,7 @@
 #version 330 core
 // Each shape is a signed distance in pixels, and a pixel is covered by clamp(1/2 - distance): exact
 // for straight edges along the axes, and within a few per cent of the covered area for the others.
+// SPDX-License-Identifier: GPL-3.0-or-later
 uniform sampler2D glyphs;
 
 in vec4 local;

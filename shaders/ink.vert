@@ -1,5 +1,6 @@
 #version 330 core
 // Shapes arrive as quads in pixels, y downwards; see src/draw/ink.c for what local and shape hold.
+// SPDX-License-Identifier: GPL-3.0-or-later
 layout(location = 0) in vec2 position;
 layout(location = 1) in vec4 local_in;
 layout(location = 2) in vec4 shape_in;

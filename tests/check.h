@@ -1,4 +1,5 @@
-/* check.h - what every test needs: cmocka, and comparisons that print the numbers. */
+/* check.h - what every test needs: cmocka, and comparisons that print the numbers.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef CHECK_H
 #define CHECK_H
 

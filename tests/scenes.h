@@ -1,4 +1,5 @@
-/* scenes.h - tests write their scenes as text; this loads one and makes a simulation of it. */
+/* scenes.h - tests write their scenes as text; this loads one and makes a simulation of it.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef SCENES_H
 #define SCENES_H
 

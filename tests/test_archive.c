@@ -1,4 +1,5 @@
-/* test_archive.c - saving, loading and hashing are one list; torn and foreign bytes are noticed. */
+/* test_archive.c - saving, loading and hashing are one list; torn and foreign bytes are noticed.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/archive.h"
 #include "check.h"
 

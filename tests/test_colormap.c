@@ -1,4 +1,5 @@
-/* test_colormap.c - colour maps are perceptual, and values find their place on every scale. */
+/* test_colormap.c - colour maps are perceptual, and values find their place on every scale.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/colormap.h"
 
 #include "check.h"

@@ -1,5 +1,6 @@
 /* test_draw_painter.c - whole pictures: both OpenGL backends and both ways of drawing grains give
- * the same; grains lie where the scene says and cover what they should. */
+ * the same; grains lie where the scene says and cover what they should.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/rng.h"
 #include "draw/canvas.h"
 #include "draw/colormap.h"
@@ -76,7 +77,13 @@ static bool same(const struct image *a, const struct image *b, int tolerance)
     return comparable && differing == 0;
 }
 
-struct look { const char *name; uint32_t count; double radius; bool rims, shade; int theme, color; };
+struct look {
+    const char *name;
+    uint32_t count;
+    double radius;
+    bool rims, shade;
+    int theme, color;
+};
 
 /* 20 pixels a length. */
 static const struct look looks[] = {

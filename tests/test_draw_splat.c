@@ -1,4 +1,5 @@
-/* test_draw_splat.c - what grains cover: areas, bands, percentiles and fields, without OpenGL. */
+/* test_draw_splat.c - what grains cover: areas, bands, percentiles and fields, without OpenGL.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/rng.h"
 #include "draw/bands.h"
 #include "draw/colormap.h"

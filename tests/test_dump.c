@@ -1,4 +1,5 @@
-/* test_dump.c - a dumped frame comes back to the bit; foreign and torn files are refused. */
+/* test_dump.c - a dumped frame comes back to the bit; foreign and torn files are refused.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/file.h"
 #include "check.h"
 #include "measure/dump.h"

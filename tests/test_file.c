@@ -2,7 +2,8 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  *
- * A full disk is played by a limit on the size of files (RLIMIT_FSIZE with SIGXFSZ ignored): write()
+ * A full disk is played by a limit on the size of files (RLIMIT_FSIZE with SIGXFSZ ignored):
+ * write()
  * then fails in the middle of a file, as it does when the disk runs full.
  */
 #include "base/file.h"

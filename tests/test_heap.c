@@ -1,4 +1,5 @@
-/* test_heap.c - heaps built by hand have the slope they were built with. */
+/* test_heap.c - heaps built by hand have the slope they were built with.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/rng.h"
 #include "check.h"
 #include "measure/heap.h"

@@ -1,4 +1,5 @@
-/* test_image.c - PNG files keep every pixel and note, and broken files are refused. */
+/* test_image.c - PNG files keep every pixel and note, and broken files are refused.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/image.h"
 
 #include "base/file.h"

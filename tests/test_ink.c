@@ -1,4 +1,5 @@
-/* test_ink.c - lines, shapes and text cover as many pixels as their geometry says. */
+/* test_ink.c - lines, shapes and text cover as many pixels as their geometry says.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/ink.h"
 
 #include "check.h"

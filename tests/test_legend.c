@@ -3,6 +3,7 @@
  *
  * The legend is drawn with the real glyphs' widths into an ink of the test's own, which notes the
  * rectangle of every shape instead of drawing it.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "check.h"
 #include "draw/ink_font.h"

@@ -1,4 +1,5 @@
-/* test_map.c - maps lose nothing; density, flow and temperature of known gases come out right. */
+/* test_map.c - maps lose nothing; density, flow and temperature of known gases come out right.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/rng.h"
 #include "check.h"
 #include "measure/map.h"
@@ -394,7 +395,7 @@ static void test_a_box_may_lie_anywhere_and_labels_carry_units(void **unused)
     CHECK(density.nx == 5 && density.ny == 4 && density.x0 == -5.3 && density.y0 == 100.1);
     CHECK_NEAR(density.values[0], 1, 1e-12);
     CHECK_NEAR(density.values[19], 1 / (0.2 * 0.6), 1e-9);      /* one grain in what is left */
-    CHECK(strcmp(heat.label, "granular temperature [cm^2/s^2], snapshot at t = 0.25 s") == 0);
+    CHECK(strcmp(heat.label, "granular temperature (cm^2/s^2), snapshot at t = 0.25 s") == 0);
     CHECK(strcmp(heat.unit, "cm^2/s^2") == 0 && strcmp(turn.unit, "1/s^2") == 0);
     CHECK(strcmp(density.name, "density") == 0 && heat.time == 0.25);
     field_free(&density);

@@ -1,5 +1,6 @@
 /* test_md_gas.c - many soft discs: conserved energy, the same bytes however they are run,
- * effects that are absent cost nothing, grains that enter and leave. */
+ * effects that are absent cost nothing, grains that enter and leave.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scenes.h"
 
 #include <omp.h>
@@ -33,15 +34,21 @@ static void test_an_elastic_box_keeps_its_energy(void **unused)
 
 /* Everything at once: friction with springs, two species, walls, an obstacle, sources, a sink. */
 static const char busy[] =
-    "until = 100.0; box = [0.0, 0.0, 40.0, 30.0]; left = \"periodic\"; right = \"periodic\"; seed = 5;"
+    "until = 100.0; box = [0.0, 0.0, 40.0, 30.0]; left = \"periodic\"; right = \"periodic\"; "
+    "seed = 5;"
     "gravity = (0.1, -1.0); count_max = 12000; overlap_limit = 1.0;"
-    "grains = ({ name = \"a\"; radius = [0.1, 0.15]; restitution = 0.6; stiffness = 2e3; friction = 0.4; },"
-    "          { name = \"b\"; radius = 0.3; density = 2.0; restitution = 0.9; stiffness = 4e3; friction = 0.2; });"
-    "placements = ({ grains = \"a\"; region = [0.0, 0.0, 40.0, 20.0]; spacing = 1.1; jitter = 0.5; temperature = 0.2; },"
+    "grains = ({ name = \"a\"; radius = [0.1, 0.15]; restitution = 0.6; stiffness = 2e3; "
+    "friction = 0.4; },"
+    "          { name = \"b\"; radius = 0.3; density = 2.0; restitution = 0.9; stiffness = 4e3; "
+    "friction = 0.2; });"
+    "placements = ({ grains = \"a\"; region = [0.0, 0.0, 40.0, 20.0]; spacing = 1.1; "
+    "jitter = 0.5; temperature = 0.2; },"
     "              { grains = \"b\"; region = [5.0, 21.0, 30.0, 24.0]; spacing = 1.1; });"
-    "sources = ({ grains = \"a\"; position = (10.0, 27.0); width = 4.0; rate = 600.0; velocity = (0.0, -4.0); });"
+    "sources = ({ grains = \"a\"; position = (10.0, 27.0); width = 4.0; rate = 600.0; "
+    "velocity = (0.0, -4.0); });"
     "walls = ({ shape = \"polyline\"; points = ((0.0, 1.0), (20.0, 0.5), (30.0, 1.0)); },"
-    "         { shape = \"arc\"; center = (20.0, 25.0); radius = 2.0; angles = (180.0, 360.0); velocity = (0.5, 0.0); moves = (0.0, 5.0); });"
+    "         { shape = \"arc\"; center = (20.0, 25.0); radius = 2.0; angles = (180.0, 360.0); "
+    "velocity = (0.5, 0.0); moves = (0.0, 5.0); });"
     "obstacles = ({ shape = \"disc\"; center = (8.0, 20.5); radius = 0.4; });"
     "sinks = ({ region = [18.0, 0.0, 22.0, 2.0]; });"
     "measure = { collisions = true; collision_window = 0.02; };"
@@ -116,7 +123,8 @@ static void test_a_column_of_discs_comes_to_rest_and_carries_its_weight(void **u
     (void)unused;
     struct scenes_run *run = scenes_begin(
         "until = 100.0; box = [0.0, 0.0, 1.0, 30.0]; top = \"open\"; gravity = (0.0, -1.0);"
-        "grains = ({ radius = 0.5; density = 1.2732395447351628; restitution = 0.3; stiffness = 1e4; friction = 0.5; });"
+        "grains = ({ radius = 0.5; density = 1.2732395447351628; restitution = 0.3; "
+        "stiffness = 1e4; friction = 0.5; });"
         "placements = ({ kind = \"square\"; region = [0.0, 0.0, 1.0, 20.0]; });"
         "md = { dt = 1e-3; };", "md");
     scenes_advance(run, 100);
@@ -178,7 +186,8 @@ static void test_dissipation_may_begin_in_a_later_phase(void **unused)
         "bottom = \"periodic\"; top = \"periodic\";"
         "grains = ({ radius = 0.5; restitution = 1.0; stiffness = 1e4; });"
         "placements = ({ spacing = 1.5; temperature = 1.0; jitter = 0.3; });"
-        "phases = ({ time = 5.0; set = [\"grains.[0].restitution=0.6\", \"grains.[0].friction=0.3\", \"md.dt=2e-4\"]; });"
+        "phases = ({ time = 5.0; set = [\"grains.[0].restitution=0.6\", "
+        "\"grains.[0].friction=0.3\", \"md.dt=2e-4\"]; });"
         "md = { dt = 5e-4; };", "md");
     const double e0 = simulation_count(&run->sim).kinetic_energy;
     scenes_advance(run, 5);

@@ -1,20 +1,39 @@
 /* test_md_obstacle.c - the stream and the obstacle of paper 004 (Table I, discs): force at two
  * radii and on a flat obstacle, its linearity in density and radius, the angle of scattering.
- * References: MODELS section 5, found with independent programs. */
+ * References: MODELS section 5, found with independent programs.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
+#include "measure/scatter.h"
 #include "scenes.h"
 
-/* R_ob = radius, rho = density; the flat obstacle is a row of discs as large as the mean grain,
- * of half length `radius`.  The mean is taken over `rows` columns after the corona is there. */
+/* R_ob = radius, rho = density; the flat obstacle is a row of touching discs as large as the mean
+ * grain, of half length `radius` or up to half a disc more.  The mean is taken over `rows` columns
+ * after the corona is there. */
 struct outcome { double force, angle; };
+
+/* Where the mass, of both sides together, is largest: a parabola over 6 degrees to both sides, as
+ * the maximum is skew. */
+static double brightest(const struct tally *tally)
+{
+    struct scatter all, folded;
+    struct error error;
+    CHECK(scatter_create(&tally->screens[0], tally->mass_in, &all, &error));
+    CHECK(scatter_fold(&all, &folded, &error));
+    const double angle = scatter_peak(&folded, 6).angle;
+    scatter_free(&all);
+    scatter_free(&folded);
+    return angle;
+}
 
 static struct outcome measure(double radius, double density, bool flat, double rows)
 {
     char text[3000], obstacle[400];
+    const double reach = 0.08 * (ceil(radius / 0.08) - 1);      /* centres of the last discs */
     if (flat) {
         snprintf(obstacle, sizeof obstacle, "{ shape = \"row\"; radius = 0.08; center = (0.0, 0.0);"
-                 " from = (0.0, %g); to = (0.0, %g); }", -radius + 0.08, radius - 0.08);
+                 " from = (0.0, %g); to = (0.0, %g); }", -reach, reach);
     } else {
-        snprintf(obstacle, sizeof obstacle, "{ shape = \"disc\"; center = (0.0, 0.0); radius = %g; }",
+        snprintf(obstacle, sizeof obstacle, "{ shape = \"disc\"; center = (0.0, 0.0); "
+                                            "radius = %g; }",
                  radius);
     }
     const double column = 0.22 / sqrt(density) / 500, start = 0.1 / sqrt(density);
@@ -27,7 +46,7 @@ static struct outcome measure(double radius, double density, bool flat, double r
         "sources = ({ kind = \"stream\"; position = (-14.0, 0.0); width = 16.0;"
         "             velocity = (500.0, 0.0); density = %g; });"
         "obstacles = (%s);"
-        "screens = ({ kind = \"circle\"; radius = 18.0; bins = 72; from = %g; });"
+        "screens = ({ kind = \"circle\"; radius = 18.0; bins = 180; from = %g; });"
         "md = { force = \"hertz\"; tangential = \"haff-werner\"; tangential_damping = 1000.0;"
         "       dt = 2.5e-6; skin = 0.5; };", end, density, obstacle, start);
     struct scenes_run *run = scenes_begin(text, "md");
@@ -36,14 +55,7 @@ static struct outcome measure(double radius, double density, bool flat, double r
     scenes_advance(run, end);
     const struct tally *tally = simulation_tally(&run->sim);
     struct outcome outcome = {.force = (tally->bodies[0].impulse_x - before) / (end - start)};
-    /* Bins of 5 degrees, both sides added; the maximum by a parabola through three bins. */
-    const struct tally_screen *screen = &tally->screens[0];
-    double mass[36];
-    uint32_t best = 1;
-    for (uint32_t k = 0; k < 36; k++) mass[k] = screen->mass[36 + k] + screen->mass[35 - k];
-    for (uint32_t k = 1; k < 35; k++) if (mass[k] > mass[best]) best = k;
-    const double l = mass[best - 1], m = mass[best], r = mass[best + 1];
-    outcome.angle = 5 * (best + 0.5 + 0.5 * (l - r) / (l - 2 * m + r));
+    outcome.angle = brightest(tally);
     printf("R_ob = %g, rho = %g%s: F = %.4g dyn, maximum at %.1f degrees, %u grains\n", radius,
            density, flat ? ", flat" : "", outcome.force, outcome.angle,
            (unsigned)simulation_count(&run->sim).grains);
@@ -57,22 +69,27 @@ static double rows_wanted = 500;
 static void test_the_force_on_the_obstacle_is_that_of_the_reference(void **unused)
 {
     (void)unused;
-    /* Tolerances: twice the spread of the reference (1 %) plus that of one run of 500 rows. */
+    /* The reference and one run of 500 rows are known to 1 % each: three times both together. */
     const struct outcome one = measure(1, 1, false, rows_wanted);
-    CHECK_NEAR(one.force, 130.9e3, 4e3);
+    CHECK_NEAR(one.force, 130.9e3, 5e3);
     const struct outcome wide = measure(1.5, 1, false, rows_wanted);
-    CHECK_NEAR(wide.force, 182.9e3, 5e3);
-    CHECK_NEAR(wide.angle, 28.5, 4);
+    CHECK_NEAR(wide.force, 182.9e3, 6e3);
+    /* The reference is known to 1.5 degrees, the top of a broad maximum here to about 1. */
+    CHECK_NEAR(wide.angle, 28.5, 2.5);
     /* F = a + b R_ob through these two gives the paper's slope of 111e3 within a tenth. */
     CHECK_NEAR((wide.force - one.force) / 0.5, 111e3, 15e3);
     const struct outcome thin = measure(1, 0.5, false, rows_wanted);
-    CHECK_NEAR(thin.force / one.force, 0.5, 0.03);
+    /* In proportion to rho but for the corona: it shields a little less in a thin stream, whose
+     * grains then push up to a tenth more each. */
+    CHECK_NEAR(thin.force / one.force, 0.525, 0.035);
 }
 
 static void test_the_force_on_a_flat_obstacle_is_that_of_the_reference(void **unused)
 {
     (void)unused;
-    CHECK_NEAR(measure(1, 1, true, rows_wanted).force, 179e3, 8e3);
+    /* 2 R_ob holds 12.5 discs; here 13, and a half more or less counts 4 %.  Tolerance: twice
+     * 2e3 of the reference and twice as much of one run. */
+    CHECK_NEAR(measure(1, 1, true, rows_wanted).force, 179e3, 6e3);
 }
 
 int main(int argc, char **argv)

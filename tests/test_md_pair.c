@@ -1,6 +1,7 @@
 /* test_md_pair.c - one collision of two soft discs against theory: restitution, contact time,
  * order of convergence, conserved momenta, Coulomb's limit.  References are the formulas and the
- * numbers of the literature, not the code. */
+ * numbers of the literature, not the code.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scenes.h"
 
 #include "model/md/md_law.h"
@@ -9,7 +10,8 @@
 static const char head_on[] =
     "until = 100.0; box = [-10.0, -5.0, 10.0, 5.0]; left = \"open\"; right = \"open\";"
     "bottom = \"open\"; top = \"open\"; overlap_limit = 1.0;"
-    "placements = ({ region = [%.17g, -0.5, 0.3, 0.51]; count = 1; velocity = (0.5, %s); spin = %s; },"
+    "placements = ({ region = [%.17g, -0.5, 0.3, 0.51]; count = 1; velocity = (0.5, %s); "
+    "spin = %s; },"
     "              { region = [0.0, -0.5, 1.0, 0.51]; count = 1; velocity = (-0.5, 0.0); });"
     "grains = ({ name = \"disc\"; radius = 0.5; density = 1.2732395447351628; %s });"
     "md = { %s };";
@@ -152,7 +154,8 @@ static void test_momenta_of_a_free_pair_are_conserved_with_friction(void **unuse
         "tangential = \"viscous\"; tangential_damping = 20.0;",
         "tangential = \"coulomb\"; tangential_damping = 50.0;", "tangential = \"spring\";",
         "tangential = \"haff-werner\"; tangential_damping = 300.0;",
-        "tangential = \"spring\"; force = \"hertz\";", "tangential = \"spring\"; integrator = \"gear\";",
+        "tangential = \"spring\"; force = \"hertz\";",
+        "tangential = \"spring\"; integrator = \"gear\";",
     };
     for (size_t k = 0; k < sizeof laws / sizeof *laws; k++) {
         char settings[200];

@@ -1,8 +1,10 @@
-/* test_md_walls.c - soft discs at walls: rest, rolling, joints, gates, moving and turning walls. */
+/* test_md_walls.c - soft discs at walls: rest, rolling, joints, gates, moving and turning walls.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scenes.h"
 
 #define DISC "grains = ({ name = \"disc\"; radius = 0.5; density = 1.2732395447351628; %s });"
-#define OPEN "left = \"open\"; right = \"open\"; top = \"open\"; bottom = \"open\"; overlap_limit = 1.0;"
+#define OPEN "left = \"open\"; right = \"open\"; top = \"open\"; bottom = \"open\"; " \
+    "overlap_limit = 1.0;"
 #define FLOOR "walls = ({ shape = \"segment\"; points = ((-50.0, 0.0), (50.0, 0.0)); });"
 
 /* One disc at x = 0, its lowest point `height` above y = 0. */
@@ -20,7 +22,8 @@ static struct scenes_run *drop(const char *grains, const char *walls, double hei
 static void test_a_disc_comes_to_rest_on_a_plane_as_deep_as_its_weight_asks(void **unused)
 {
     (void)unused;
-    struct scenes_run *run = drop("stiffness = 1e4; restitution = 0.5;", FLOOR, 0.2, "(0.0, 0.0)", 0,
+    struct scenes_run *run = drop("stiffness = 1e4; restitution = 0.5;", FLOOR, 0.2, "(0.0, 0.0)",
+                                  0,
                                   "gravity = (0.0, -1.0); md = { dt = 1e-3; };");
     scenes_advance(run, 20);
     struct grains g = scenes_look(run);
@@ -118,7 +121,8 @@ static void test_a_moving_wall_gives_twice_its_speed(void **unused)
 {
     (void)unused;
     struct scenes_run *run = drop("stiffness = 1e4; restitution = 1.0;",
-        "walls = ({ shape = \"segment\"; points = ((-5.0, -1.0), (5.0, -1.0)); velocity = (0.0, 1.0); });",
+        "walls = ({ shape = \"segment\"; points = ((-5.0, -1.0), (5.0, -1.0)); velocity = (0.0, "
+        "1.0); });",
         0, "(0.0, 0.0)", 0, "md = { dt = 1e-4; };");
     scenes_advance(run, 2);
     struct grains g = scenes_look(run);
@@ -131,7 +135,8 @@ static void test_a_gate_holds_until_it_opens(void **unused)
 {
     (void)unused;
     struct scenes_run *run = drop("stiffness = 1e4; restitution = 0.5;",
-        "walls = ({ shape = \"segment\"; points = ((-5.0, 0.0), (5.0, 0.0)); opens = 10.0; closes = 20.0; });",
+        "walls = ({ shape = \"segment\"; points = ((-5.0, 0.0), (5.0, 0.0)); opens = 10.0; "
+        "closes = 20.0; });",
         0, "(0.0, 0.0)", 0, "gravity = (0.0, -1.0); md = { dt = 1e-3; };");
     scenes_advance(run, 10);
     struct grains g = scenes_look(run);
@@ -148,7 +153,8 @@ static void test_a_conveyor_carries_along(void **unused)
 {
     (void)unused;
     struct scenes_run *run = drop("stiffness = 1e4; restitution = 0.3; friction = 0.3;",
-        "walls = ({ shape = \"segment\"; points = ((-50.0, 0.0), (50.0, 0.0)); surface_speed = 1.5; });",
+        "walls = ({ shape = \"segment\"; points = ((-50.0, 0.0), (50.0, 0.0)); "
+        "surface_speed = 1.5; });",
         0, "(0.0, 0.0)", 0, "gravity = (0.0, -1.0); md = { dt = 1e-3; };");
     scenes_advance(run, 10);
     struct grains g = scenes_look(run);

@@ -74,7 +74,8 @@ static const struct example examples[] = {
      "screens = ({ kind = \"circle\"; center = (0.0, 0.0); radius = 14.0; });"
      "measure = { collisions = true; };", 6, true, true},
     {"many grains for two threads", "until = 0.5; box = [0.0, 0.0, 75.0, 75.0];" PERIODIC GRAINS
-     "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 16.0; });", 0.5, false, false},
+     "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 16.0; "
+     "});", 0.5, false, false},
 };
 
 enum { EXAMPLES = sizeof examples / sizeof *examples };

@@ -1,4 +1,5 @@
-/* test_npy.c - array files follow NumPy's format to the byte, and no header can mislead. */
+/* test_npy.c - array files follow NumPy's format to the byte, and no header can mislead.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/file.h"
 #include "check.h"
 #include "measure/npy.h"

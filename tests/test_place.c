@@ -1,4 +1,5 @@
-/* test_place.c - grains at the start: lattices, random packings, temperature; none overlaps. */
+/* test_place.c - grains at the start: lattices, random packings, temperature; none overlaps.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "check.h"
 #include "scene/scene.h"
 

@@ -1,4 +1,5 @@
-/* test_quantile.c - percentiles of any range of numbers are right to 0.4 %, however they come. */
+/* test_quantile.c - percentiles of any range of numbers are right to 0.4 %, however they come.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/rng.h"
 #include "check.h"
 #include "measure/quantile.h"

@@ -1,4 +1,5 @@
-/* test_scatter.c - a stream scattered in a known way shows its distribution and its maximum. */
+/* test_scatter.c - a stream scattered in a known way shows its distribution and its maximum.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/rng.h"
 #include "check.h"
 #include "measure/scatter.h"

@@ -1,4 +1,5 @@
-/* test_scene.c - a scene as a whole: round trip, built-in scenes, effects, phases, quick forms. */
+/* test_scene.c - a scene as a whole: round trip, built-in scenes, effects, phases, quick forms.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/asset.h"
 #include "base/file.h"
 #include "check.h"

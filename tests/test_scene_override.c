@@ -1,5 +1,6 @@
 /* test_scene_override.c - KEY=VALUE reaches every key, adds what is absent, and tells typing
- * errors with the nearest known key; vectors, numbers and includes are read generously. */
+ * errors with the nearest known key; vectors, numbers and includes are read generously.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/file.h"
 #include "check.h"
 #include "model/model.h"

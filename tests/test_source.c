@@ -1,4 +1,5 @@
-/* test_source.c - grains that enter: a pure function of seed, source and number. */
+/* test_source.c - grains that enter: a pure function of seed, source and number.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scenes.h"
 
 #include "model/source.h"
@@ -37,7 +38,8 @@ static void test_columns_have_the_spacing_of_the_stream(void **unused)
             high = fmax(high, grains[i].y);
             radii += grains[i].radius;
             for (uint32_t j = 0; j < i; j++) {
-                CHECK(fabs(grains[i].y - grains[j].y) >= grains[i].radius + grains[j].radius - 1e-12);
+                CHECK(fabs(grains[i].y - grains[j].y) >= grains[i].radius + grains[j].radius
+                                                             - 1e-12);
             }
         }
         gaps += high - low;
@@ -118,7 +120,8 @@ static void test_a_grain_without_room_waits(void **unused)
      * than they fall out of the way. */
     struct scenes_run *run = scenes_begin(
         "until = 10.0; box = [0.0, 0.0, 1.2, 12.0]; gravity = (0.0, -1.0); count_max = 40;"
-        "grains = ({ radius = 0.5; restitution = 0.5; stiffness = 1e4; density = 1.2732395447351628; });"
+        "grains = ({ radius = 0.5; restitution = 0.5; stiffness = 1e4; "
+        "density = 1.2732395447351628; });"
         "sources = ({ position = (0.6, 10.0); rate = 100.0; });"
         "md = { dt = 1e-3; };", "md");
     scenes_advance(run, 1.3);
@@ -126,7 +129,7 @@ static void test_a_grain_without_room_waits(void **unused)
     assert_int_equal(simulation_count(&run->sim).grains, 1);
     scenes_advance(run, 40);
     const struct counters counters = simulation_count(&run->sim);
-    assert_int_equal(counters.grains, 10);                      /* 0.5 .. 9.5, the next would touch */
+    assert_int_equal(counters.grains, 10);                      /* 0.5 .. 9.5, then full */
     CHECK(counters.overlap_max < 0.01);
     scenes_end(run);
 }

@@ -1,4 +1,5 @@
-/* test_spectrum.c - gases, lattices and waves have the structure factor of the textbook. */
+/* test_spectrum.c - gases, lattices and waves have the structure factor of the textbook.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/rng.h"
 #include "check.h"
 #include "measure/spectrum.h"

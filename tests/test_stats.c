@@ -1,4 +1,5 @@
-/* test_stats.c - errors of correlated series, of lines and of parabolas are those of theory. */
+/* test_stats.c - errors of correlated series, of lines and of parabolas are those of theory.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/rng.h"
 #include "check.h"
 #include "measure/stats.h"

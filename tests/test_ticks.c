@@ -1,4 +1,5 @@
-/* test_ticks.c - ticks stand at round numbers inside the range and say exactly where they are. */
+/* test_ticks.c - ticks stand at round numbers inside the range and say exactly where they are.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/ticks.h"
 
 #include "base/rng.h"

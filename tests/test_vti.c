@@ -1,4 +1,5 @@
-/* test_vti.c - VTK files are sound XML whose base64 gives the values back; CSV reads back too. */
+/* test_vti.c - VTK files are sound XML whose base64 gives the values back; CSV reads back too.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/file.h"
 #include "check.h"
 #include "measure/csv.h"

@@ -1,4 +1,5 @@
-/* test_wall.c - distances from walls against brute force; walls that move, shake and open. */
+/* test_wall.c - distances from walls against brute force; walls that move, shake and open.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/rng.h"
 #include "check.h"
 #include "scene/wall.h"

@@ -3,6 +3,7 @@
  * A record: hash of the name (8 bytes), width (8), count (8), then the data padded to 8 bytes.
  * Loading walks the records from the last hit onwards and wraps once, so a list that is loaded in
  * the order it was saved costs one comparison a record.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "base/archive.h"
 

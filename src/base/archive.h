@@ -5,6 +5,7 @@
  * state may be loaded into a scene with more or fewer effects: a record that nobody asks for is
  * passed over, and an array whose record is absent keeps the neutral value that `create` gave
  * it.  A record of another shape than asked for is an error, and so are torn bytes.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef ARCHIVE_H
 #define ARCHIVE_H

@@ -2,6 +2,7 @@
  *
  * Every array is zeroed and begins on a cache line (64 bytes), so that SIMD loads never
  * straddle one.  An arena that is all zero is empty and ready.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef ARENA_H
 #define ARENA_H

@@ -1,4 +1,4 @@
-/* asset.c - see asset.h. */
+/* asset.c - see asset.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/asset.h"
 
 #include <string.h>

@@ -1,5 +1,6 @@
 /* asset.h - the files of shaders/, scenes/ and assets/, compiled into the program, so that a copy
- * of the binary is complete.  The table is made at build time by assets/embed.c. */
+ * of the binary is complete.  The table is made at build time by assets/embed.c.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef ASSET_H
 #define ASSET_H
 

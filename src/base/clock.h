@@ -1,4 +1,5 @@
-/* clock.h - wall and processor time.  Simulations never read either. */
+/* clock.h - wall and processor time.  Simulations never read either.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef CLOCK_H
 #define CLOCK_H
 

@@ -1,4 +1,4 @@
-/* error.c - see error.h. */
+/* error.c - see error.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/error.h"
 
 #include <stdarg.h>

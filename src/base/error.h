@@ -2,6 +2,7 @@
  *
  * Everything that a user can cause (a file, a scene, no memory) returns false and fills one of
  * these; nothing is printed below cli/.  What only a programmer can cause is an assert.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef ERROR_H
 #define ERROR_H

@@ -1,4 +1,4 @@
-/* file.c - see file.h. */
+/* file.c - see file.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/file.h"
 
 #include <assert.h>
@@ -69,7 +69,8 @@ void *file_load(const char *path, size_t size_max, size_t *size, struct error *e
     if (fstat(fileno(stream), &status) != 0 || !S_ISREG(status.st_mode)) {
         error_set(error, "%s: not an ordinary file", path);
     } else if ((uintmax_t)status.st_size > size_max) {
-        error_set(error, "%s: larger than %zu bytes, which is more than this can be", path, size_max);
+        error_set(error, "%s: larger than %zu bytes, "
+                         "which is more than this can be", path, size_max);
     } else if (!(bytes = malloc((size_t)status.st_size + 1))) {
         error_set(error, "%s: not enough memory to read it", path);
     } else if (fread(bytes, 1, (size_t)status.st_size, stream) != (size_t)status.st_size) {

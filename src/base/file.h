@@ -3,6 +3,7 @@
  * A file is written beside its final name, synced and renamed; until file_commit() nobody sees
  * it, and file_abandon() leaves no trace.  The stream remembers its first failure, so a long list
  * of writes is checked once, at the end.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef FILE_H
 #define FILE_H

@@ -4,6 +4,7 @@
  * pure function of (seed, a, b, c), for example (seed, step, site, draw): it does not depend
  * on the order of loops or on the number of threads.  Both end in the finaliser of splitmix64
  * (Steele, Lea and Flood 2014), which passes the usual batteries.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef RNG_H
 #define RNG_H

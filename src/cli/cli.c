@@ -1,4 +1,7 @@
-/* cli.c - the table of commands: what `help` tells, which options each takes, who does it. */
+/* cli.c - the table of commands: what `help` tells, which options each takes, who does it.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 
 #define SIMULATING OPTION_model, OPTION_method, OPTION_set, OPTION_seed, OPTION_until, OPTION_quick
@@ -15,7 +18,7 @@ static const uint8_t movie_options[] = {OPTION_output, OPTION_side_by_side, OPTI
     OPTION_every, LOOK, SIMULATING, ALWAYS};
 static const uint8_t map_options[] = {OPTION_output, OPTION_field, OPTION_time, OPTION_average,
     OPTION_as, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_size, OPTION_zoom, OPTION_theme,
-    OPTION_colormap, OPTION_scale, OPTION_range, OPTION_title, SIMULATING, ALWAYS};
+    OPTION_colormap, OPTION_scale, OPTION_map_range, OPTION_title, SIMULATING, ALWAYS};
 static const uint8_t export_options[] = {OPTION_to, OPTION_output, OPTION_frame, OPTION_time,
     OPTION_help, OPTION_COUNT};
 static const uint8_t check_options[] = {OPTION_explain, SIMULATING, OPTION_help, OPTION_COUNT};

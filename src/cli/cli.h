@@ -1,4 +1,7 @@
-/* cli.h - the subcommands, one file each; a command returns the exit code. */
+/* cli.h - the subcommands, one file each; a command returns the exit code.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef CLI_H
 #define CLI_H
 

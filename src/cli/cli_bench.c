@@ -1,8 +1,11 @@
-/* cli_bench.c - `bench [NAME...]`: the table of timings, and ratios to an earlier one. */
+/* cli_bench.c - `bench [NAME...]`: the table of timings, and ratios to an earlier one.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "base/file.h"
-#include "run/bench.h"
+#include "bench/bench.h"
 #include "run/build.h"
 
 #include <jansson.h>

@@ -1,4 +1,7 @@
-/* cli_check.c - `check SCENE`: everything that is wrong with it, and what it amounts to. */
+/* cli_check.c - `check SCENE`: everything that is wrong with it, and what it amounts to.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 

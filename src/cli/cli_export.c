@@ -1,4 +1,7 @@
-/* cli_export.c - `export RUN --to csv`: the grains of a run for other programs. */
+/* cli_export.c - `export RUN --to csv`: the grains of a run for other programs.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "measure/csv.h"

@@ -1,4 +1,7 @@
-/* cli_frame.c - `frame SCENE|RUN`: one picture. */
+/* cli_frame.c - `frame SCENE|RUN`: one picture.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "run/film.h"

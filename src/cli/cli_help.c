@@ -1,4 +1,7 @@
-/* cli_help.c - `help [COMMAND|KEY]`, from the tables that also do the parsing. */
+/* cli_help.c - `help [COMMAND|KEY]`, from the tables that also do the parsing.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 

@@ -1,4 +1,7 @@
-/* cli_info.c - `info SCENE|RUN`: a run's manifest, or one grain and its contacts. */
+/* cli_info.c - `info SCENE|RUN`: a run's manifest, or one grain and its contacts.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "run/dumps.h"

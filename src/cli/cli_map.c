@@ -1,4 +1,7 @@
-/* cli_map.c - `map SCENE|RUN`: field maps. */
+/* cli_map.c - `map SCENE|RUN`: field maps.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "run/folder.h"

@@ -1,4 +1,7 @@
-/* cli_movie.c - `movie SCENE|RUN...`: a film, or several side by side. */
+/* cli_movie.c - `movie SCENE|RUN...`: a film, or several side by side.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "run/folder.h"

@@ -1,4 +1,7 @@
-/* cli_run.c - `run SCENE`. */
+/* cli_run.c - `run SCENE`.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "run/folder.h"

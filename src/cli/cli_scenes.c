@@ -1,4 +1,7 @@
-/* cli_scenes.c - `scenes`: what is built in, and which model can run it. */
+/* cli_scenes.c - `scenes`: what is built in, and which model can run it.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "base/asset.h"

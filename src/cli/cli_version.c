@@ -1,4 +1,7 @@
-/* cli_version.c - `version`: what this program is made of, and what it finds on this machine. */
+/* cli_version.c - `version`: what this program is made of, and what it finds on this machine.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "draw/canvas.h"

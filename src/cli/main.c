@@ -1,10 +1,15 @@
-/* main.c - finds the command, parses its options, carries it out. */
+/* main.c - finds the command, parses its options, carries it out.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/cli.h"
 #include "cli/opening.h"
 
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static int unknown_command(const char *word)
 {
@@ -22,8 +27,22 @@ static int unknown_command(const char *word)
     return EXIT_USAGE;
 }
 
+/* Threads that wait for each other should sleep.  By default they spin, and where other programs
+ * want the processors too, they spin for one that is not running: 10,000 grains on two threads
+ * took 21 s in place of 0.6 s.  OpenMP reads its policy before main() begins, so the program starts
+ * itself once more, unless its user has chosen; where that fails it goes on as it is. */
+static void let_waiting_threads_sleep(char **arguments)
+{
+    char program[4096];
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT") || length <= 0) return;
+    program[length] = 0;
+    if (setenv("OMP_WAIT_POLICY", "passive", 1) == 0) execv(program, arguments);
+}
+
 int main(int count, char **arguments)
 {
+    let_waiting_threads_sleep(arguments);
     signal(SIGPIPE, SIG_IGN);           /* a reader that ends early is an error like any other */
     signal(SIGXFSZ, SIG_IGN);           /* and so is a file that grows too large */
     const char *word = count > 1 ? arguments[1] : "help";

@@ -1,4 +1,7 @@
-/* opening.c - see opening.h. */
+/* opening.c - see opening.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/opening.h"
 
 #include "base/file.h"

@@ -1,5 +1,8 @@
 /* opening.h - what most commands begin with: threads, signals, the scene with its findings told,
- * and what they end with: an error told. */
+ * and what they end with: an error told.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef OPENING_H
 #define OPENING_H
 

@@ -1,4 +1,7 @@
-/* options.c - see options.h. */
+/* options.c - see options.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/options.h"
 
 #include "scene/key.h"

@@ -3,6 +3,8 @@
  *
  * An option that only sets a key of the scene says which, and becomes an override like -s
  * KEY=VALUE, in the order given; so its value is checked in one place, by the scene's keys.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef OPTIONS_H
 #define OPTIONS_H
@@ -46,6 +48,7 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
       "viridis, inferno, cividis, turbo")                                                       \
     X(scale,     "scale",     0,   "NAME",  "view.scale", FORM_WORD, "linear, sqrt, log")       \
     X(range,     "range",     0,   "A,B",   "view.range", FORM_LIST, "of the colours")          \
+    X(map_range, "range",     0,   "A,B",   "measure.range", FORM_LIST, "of the maps' colours") \
     X(arrows,    "arrows",    0,   NULL,    "view.arrows", FORM_ON, "velocities as arrows")     \
     X(forces,    "forces",    0,   NULL,    "view.forces", FORM_ON, "contact forces as lines")  \
     X(rims,      "rims",      0,   NULL,    "view.rims", FORM_ON, "dark rims around grains")    \

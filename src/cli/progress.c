@@ -1,4 +1,7 @@
-/* progress.c - see progress.h. */
+/* progress.c - see progress.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "cli/progress.h"
 
 #include "base/clock.h"
@@ -52,7 +55,7 @@ static const char *short_time(double seconds, char *text, size_t size)
 
 static void show_bar(struct progress *progress, const char *line, double share)
 {
-    enum { BAR = 24 };
+    enum { BAR = 12 };         /* leaves room for the numbers in 80 columns */
     struct winsize window = {0};
     int width = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 ? window.ws_col : 80;
     if (width < 20) width = 80;
@@ -76,7 +79,7 @@ void progress_show(struct progress *progress, const struct run_status *status)
     char line[256], rate[32], eta[32];
     const double frame_rate = status->wall > 0 ? (double)status->frames / status->wall : 0;
     if (strcmp(status->doing, "simulating") == 0) {
-        snprintf(line, sizeof line, "%3.0f%%  t = %.4g of %.4g  %s %s/s  %.1f frames/s  %s left",
+        snprintf(line, sizeof line, "%3.0f%% t = %.3g of %.3g, %s %s/s, %.1f frames/s, %s left",
                  100 * status->share, status->time, status->until,
                  short_number(status->rate, rate, sizeof rate), status->work, frame_rate,
                  short_time(status->eta, eta, sizeof eta));

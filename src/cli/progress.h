@@ -1,4 +1,7 @@
-/* progress.h - one line on a terminal that is written over, plain lines elsewhere; on stderr. */
+/* progress.h - one line on a terminal that is written over, plain lines elsewhere; on stderr.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef PROGRESS_H
 #define PROGRESS_H
 

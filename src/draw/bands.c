@@ -1,5 +1,6 @@
 /* bands.c - see bands.h: a counting sort.  Arrays grow by a quarter more than asked for, so that
- * a film with a slowly growing number of grains seldom allocates. */
+ * a film with a slowly growing number of grains seldom allocates.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/bands.h"
 
 #include <assert.h>

@@ -1,4 +1,5 @@
-/* bands.h - the grains of a picture, sorted into bands of rows. */
+/* bands.h - the grains of a picture, sorted into bands of rows.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef BANDS_H
 #define BANDS_H
 

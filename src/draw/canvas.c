@@ -3,6 +3,7 @@
  * A backend is how a context is opened, made current and let go; all else is common.  The few
  * constants of OSMesa and EGL are written out here because their headers cannot be included
  * beside the core profile's, and so that only one header package is needed to build.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/canvas.h"
 

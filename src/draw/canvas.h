@@ -9,6 +9,7 @@
  * The framebuffer holds premultiplied colours with row 0 at the bottom, as GL has it.  Whoever
  * blends straight colours into it uses what canvas_begin() sets: SRC_ALPHA, ONE_MINUS_SRC_ALPHA
  * for the colour and ONE, ONE_MINUS_SRC_ALPHA for alpha, which keeps it premultiplied.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef CANVAS_H
 #define CANVAS_H

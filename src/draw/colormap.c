@@ -1,6 +1,7 @@
 /* colormap.c - see colormap.h.
  *
  * The maps are published tables, kept as text in assets/colormaps and read once.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/colormap.h"
 

@@ -1,4 +1,5 @@
-/* colormap.h - perceptual colour maps, and from a value to a colour. */
+/* colormap.h - perceptual colour maps, and from a value to a colour.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef COLORMAP_H
 #define COLORMAP_H
 

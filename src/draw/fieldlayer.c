@@ -1,4 +1,4 @@
-/* fieldlayer.c - see fieldlayer.h. */
+/* fieldlayer.c - see fieldlayer.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/fieldlayer.h"
 
 #include "draw/colormap.h"

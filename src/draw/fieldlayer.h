@@ -2,6 +2,7 @@
  *
  * Made by the processor: looking up a cell and a colour for each pixel of a row is all there is to
  * do.  Cells without a value (NAN) and all around the grid stay as the ground is.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef FIELDLAYER_H
 #define FIELDLAYER_H

@@ -1,4 +1,4 @@
-/* gl.c - see gl.h. */
+/* gl.c - see gl.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/gl.h"
 
 #include "base/asset.h"

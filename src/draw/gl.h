@@ -3,6 +3,7 @@
  * The program links no GL library: a canvas opens OSMesa or EGL and asks it for every function of
  * the one list below.  They are called as gl.DrawArrays(...); `gl` holds those of the context that
  * is current on this thread, and canvas_begin() keeps the two together.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef GL_H
 #define GL_H

@@ -1,4 +1,4 @@
-/* grains_gl.c - see grains_gl.h. */
+/* grains_gl.c - see grains_gl.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/grains_gl.h"
 
 #include "draw/gl.h"

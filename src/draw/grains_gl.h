@@ -2,6 +2,7 @@
  *
  * This is the reference picture.  One instanced quad a grain (a point sprite would be half as dear
  * but vanishes whole when its centre leaves the picture), added up in a framebuffer of floats.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef GRAINS_GL_H
 #define GRAINS_GL_H

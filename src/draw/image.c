@@ -5,6 +5,7 @@
  * choose_compression), and one pass over the pixels.  libpng reports failure by longjmp; every
  * call that may jump is inside a function whose locals are not read after the jump, all state
  * lives in a struct of the caller.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/image.h"
 

@@ -1,4 +1,4 @@
-/* image.h - pixels in memory, and PNG files of them. */
+/* image.h - pixels in memory, and PNG files of them.  SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef IMAGE_H
 #define IMAGE_H
 

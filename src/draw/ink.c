@@ -14,6 +14,7 @@
  * Lines, discs, rectangles and plates are all rounded boxes.  Colours are blended as they are
  * (not in linear light), so that an edge has the grey that its coverage says; the framebuffer
  * then holds colours multiplied by alpha.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/ink.h"
 

@@ -3,6 +3,7 @@
  * Everything is given in pixels from the upper left corner, y downwards, and drawn in the order
  * given when ink_flush() is called: shapes and glyphs are quads of one vertex buffer and one
  * shader, so a legend with all its text is one draw call.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef INK_H
 #define INK_H

@@ -5,6 +5,7 @@
  * look equal; horizontally, they are not, and a glyph is rendered at the quarter of a pixel
  * where the pen stands, so that letters keep their spacing.  Glyphs are kept for the life of the
  * font; they fill the atlas row by row.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/ink_font.h"
 

@@ -1,4 +1,5 @@
-/* ink_font.h - glyphs of one font at any size, in one grey atlas.  Private to ink. */
+/* ink_font.h - glyphs of one font at any size, in one grey atlas.  Private to ink.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef INK_FONT_H
 #define INK_FONT_H
 

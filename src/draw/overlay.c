@@ -1,4 +1,5 @@
-/* overlay.c - colours of the themes, walls, and the spokes of turning grains. */
+/* overlay.c - colours of the themes, walls, and the spokes of turning grains.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/overlay.h"
 
 #include "draw/overlay_layout.h"

@@ -1,5 +1,6 @@
 /* overlay.h - what is drawn over and around the grains: walls, velocity arrows, contact forces,
- * and the legend (colour bar with ticks and unit, scale bar, gravity arrow, labels). */
+ * and the legend (colour bar with ticks and unit, scale bar, gravity arrow, labels).
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef OVERLAY_H
 #define OVERLAY_H
 

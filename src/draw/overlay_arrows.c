@@ -4,6 +4,7 @@
  * 2 or 5 times a power of ten, so that arrows in a film stay comparable.  Among thousands of
  * grains no arrow could be told from the next, so there they are averaged over the cells of a
  * grid, one arrow a cell.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/overlay_arrows.h"
 
@@ -139,7 +140,8 @@ bool overlay_arrows_key(const struct picture *picture, const struct transform *t
     return found;
 }
 
-struct sample { double speed, pixels, width; };    /* the arrow in the legend; width of all arrows */
+/* The arrow in the legend; width of all arrows. */
+struct sample { double speed, pixels, width; };
 
 /* All arrows in one colour, or the lines beneath them; those too short to point anywhere are left
  * out, and those that are mostly head need no line. */

@@ -1,4 +1,5 @@
-/* overlay_arrows.h - how velocities are measured out, for the legend.  Private to the overlay. */
+/* overlay_arrows.h - how velocities are measured out, for the legend.  Private to the overlay.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef OVERLAY_ARROWS_H
 #define OVERLAY_ARROWS_H
 

@@ -3,6 +3,7 @@
  * The 99th percentile of the forces is about as wide as a mean radius.  Percentiles change from
  * frame to frame, so it is rounded to 1, 2 or 5 times a power of ten: in a film the widths stay
  * comparable, and the legend can name a round force.  Weak lines are drawn first and paler.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/overlay_forces.h"
 

@@ -1,4 +1,5 @@
-/* overlay_forces.h - how forces are measured out, for the legend.  Private to the overlay. */
+/* overlay_forces.h - how forces are measured out, for the legend.  Private to the overlay.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef OVERLAY_FORCES_H
 #define OVERLAY_FORCES_H
 

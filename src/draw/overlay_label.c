@@ -1,4 +1,4 @@
-/* overlay_label.c - see overlay_label.h. */
+/* overlay_label.c - see overlay_label.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/overlay_label.h"
 
 #include <ctype.h>

@@ -1,5 +1,6 @@
 /* overlay_label.h - texts with variables, and units as they are printed.  Private to the
- * overlay. */
+ * overlay.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef OVERLAY_LABEL_H
 #define OVERLAY_LABEL_H
 

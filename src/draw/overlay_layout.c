@@ -1,5 +1,6 @@
 /* overlay_layout.c - see overlay_layout.h.  Every length is a multiple of the letters' size, so a
- * legend looks the same at 320x240 and at 8000x6000. */
+ * legend looks the same at 320x240 and at 8000x6000.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/overlay_layout.h"
 
 #include "draw/overlay.h"

@@ -10,6 +10,7 @@
  *
  * It depends on the view alone, never on numbers that change from frame to frame, so that a film
  * stands still.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef OVERLAY_LAYOUT_H
 #define OVERLAY_LAYOUT_H

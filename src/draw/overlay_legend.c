@@ -2,6 +2,7 @@
  *
  * Everything stands in the places of overlay_layout.h.  A text that would leave its place is
  * written smaller, so nothing ever overlaps or is cut off.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/overlay_legend.h"
 

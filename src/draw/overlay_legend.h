@@ -1,4 +1,5 @@
-/* overlay_legend.h - what the legend's parts share.  Private to the overlay. */
+/* overlay_legend.h - what the legend's parts share.  Private to the overlay.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef OVERLAY_LEGEND_H
 #define OVERLAY_LEGEND_H
 

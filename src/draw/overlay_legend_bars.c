@@ -1,4 +1,5 @@
-/* overlay_legend_bars.c - colour bars with ticks, unit and end marks; or the names of species. */
+/* overlay_legend_bars.c - colour bars with ticks, unit and end marks; or the names of species.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/overlay_legend.h"
 
 #include "draw/colormap.h"
@@ -87,6 +88,8 @@ static double draw_heading(const struct legend *legend, const char *heading, dou
     const uint32_t count = wrap(legend, heading, size, room, lines);
     for (uint32_t k = 0; k < count; k++) {
         y += line_spacing * size;
+        char *comma = strrchr(lines[k], ',');      /* a line break says the same */
+        if (comma && comma[1] == 0) *comma = 0;
         const double fitted = overlay_legend_fit(legend, size, room, lines[k]);
         ink_text(legend->ink, x, y, fitted, INK_LEFT, legend->text, lines[k]);
     }

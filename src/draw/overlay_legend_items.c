@@ -1,4 +1,5 @@
-/* overlay_legend_items.c - what a length, a force and a velocity look like in this picture. */
+/* overlay_legend_items.c - what a length, a force and a velocity look like in this picture.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/overlay_legend.h"
 
 #include "draw/overlay.h"

@@ -7,6 +7,7 @@
  *
  * Grains are sorted into bands of rows, so that the sums of a band stay in the cache and a picture
  * of any size needs little memory.  Buffers grow to what the largest frame needed.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/painter.h"
 

@@ -2,6 +2,7 @@
  *
  * One painter serves one size and one theme for a whole film: shaders, glyphs and buffers are
  * made once.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef PAINTER_H
 #define PAINTER_H

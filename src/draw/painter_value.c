@@ -1,4 +1,5 @@
-/* painter_value.c - what grains are coloured by: one number a grain, its name, and its range. */
+/* painter_value.c - what grains are coloured by: one number a grain, its name, and its range.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/painter.h"
 
 #include "draw/percentile.h"

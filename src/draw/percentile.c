@@ -1,4 +1,5 @@
-/* percentile.c - see percentile.h: selection by partition, O(count). */
+/* percentile.c - see percentile.h: selection by partition, O(count).
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "draw/percentile.h"
 
 #include <assert.h>

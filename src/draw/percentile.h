@@ -1,4 +1,5 @@
-/* percentile.h - the value below which a share of all values lies. */
+/* percentile.h - the value below which a share of all values lies.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef PERCENTILE_H
 #define PERCENTILE_H
 

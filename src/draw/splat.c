@@ -3,6 +3,7 @@
  * The loop over a row first computes coverages, which the compiler turns into SIMD, then adds them
  * to the sums, one pixel (four floats) at a time.  The styles are constants of forced-inline
  * loops, so plain discs pay nothing for rims and shading.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/splat.h"
 

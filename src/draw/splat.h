@@ -9,6 +9,7 @@
  * that are seen as discs, and the exact coverage of a square of the same area for smaller ones.
  *
  * This file is the processor's path; grains_gl.h computes the same sums by OpenGL.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef SPLAT_H
 #define SPLAT_H

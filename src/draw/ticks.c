@@ -2,6 +2,7 @@
  *
  * A tick is kept as an integer times a power of ten until it is written, so that 0.3 is written
  * "0.3" and not what three times 0.1 happens to give.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/ticks.h"
 

@@ -1,4 +1,5 @@
-/* ticks.h - round numbers along a scale, and how to write them. */
+/* ticks.h - round numbers along a scale, and how to write them.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef TICKS_H
 #define TICKS_H
 

@@ -1,4 +1,4 @@
-/* csv.c - see csv.h. */
+/* csv.c - see csv.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measure/csv.h"
 
 #include "base/file.h"
@@ -78,6 +78,43 @@ bool csv_save_grains(const char *path, const struct grains *grains, const struct
         }
         fprintf(file.stream, ",%.9g,%u\n", (double)grains->collision_rate[k],
                 (unsigned)grains->species[k]);
+    }
+    return file_commit(&file, error);
+}
+
+static bool print_peak(FILE *stream, const struct scatter *scatter, struct error *error)
+{
+    const double reach = 6;     /* of the parabola, degrees: the peak is skew, a wide one leans */
+    struct scatter folded;
+    if (!scatter_fold(scatter, &folded, error)) return false;
+    const struct scatter_peak peak = scatter_peak(&folded, reach);
+    fprintf(stream, "# mass at both sides together is largest at %.1f +- %.1f degrees\n",
+            peak.angle,
+            peak.angle_error);
+    scatter_free(&folded);
+    return true;
+}
+
+bool csv_save_scatter(const char *path, const struct scatter *scatter, const struct scene *scene,
+                      struct error *error)
+{
+    struct file file;
+    if (!file_begin(&file, path, error)) return false;
+    fprintf(file.stream, "angle,count,mass,mass_error,momentum,spin\n"
+            "# units: degrees,1,1/rad,1/rad,%s,%s\n", unit_or_one(scene_unit(scene, "momentum")),
+            unit_or_one(scene_unit(scene, "angular momentum")));
+    if (!print_peak(file.stream, scatter, error)) {
+        file_abandon(&file);
+        return false;
+    }
+    for (uint32_t k = 0; k < scatter->bins; k++) {
+        const double numbers[] = {scatter->angle[k], scatter->count[k], scatter->mass[k],
+                                  scatter->mass_error[k], scatter->momentum[k], scatter->spin[k]};
+        for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++) {
+            if (n > 0) fputc(',', file.stream);
+            csv_number(file.stream, numbers[n]);
+        }
+        fputc('\n', file.stream);
     }
     return file_commit(&file, error);
 }

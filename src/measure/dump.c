@@ -1,4 +1,4 @@
-/* dump.c - see dump.h. */
+/* dump.c - see dump.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measure/dump.h"
 
 #include "measure/npy.h"

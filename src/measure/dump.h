@@ -3,6 +3,7 @@
  *
  * dump/000012.npy holds one record a grain (`numpy.load(f)["x"]`), dump/000012.contacts.npy one a
  * contact; times and counts of all frames are in dump/index.csv (dump_index.h).
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef DUMP_H
 #define DUMP_H

@@ -1,4 +1,4 @@
-/* dump_index.c - see dump_index.h. */
+/* dump_index.c - see dump_index.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measure/dump_index.h"
 
 #include "base/file.h"

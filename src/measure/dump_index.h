@@ -2,6 +2,7 @@
  *
  * A line is appended and synced after the frame's files are whole, so every line names files that
  * are there; a last line that was torn by a crash is left out on reading.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef DUMP_INDEX_H
 #define DUMP_INDEX_H

@@ -1,4 +1,4 @@
-/* heap.c - see heap.h. */
+/* heap.c - see heap.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measure/heap.h"
 
 #include "measure/stats.h"

@@ -1,4 +1,5 @@
-/* heap.h - the surface of a heap and the slopes of its flanks. */
+/* heap.h - the surface of a heap and the slopes of its flanks.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef HEAP_H
 #define HEAP_H
 

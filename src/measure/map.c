@@ -3,6 +3,7 @@
  * The grains of a snapshot are split into a number of parts that depends on the grid alone, and
  * each part adds into cells of its own for the whole life of the map; the parts meet, in order,
  * when a field is asked for.  So the bytes of a map do not depend on the number of threads.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "measure/map.h"
 
@@ -232,12 +233,19 @@ static void total_join(struct total *total, const struct map_cell *cell)
     total->area += cell->area;
 }
 
+/* A smooth kernel reaches cells where there is nothing to tell: two widths from the only grain of
+ * a Gauss kernel one cell wide its weight is exp(-2) / (2 pi); farther out means are left open. */
+static const double weight_least = 0.0215;
+
 static double ratio(double sum, double weight) { return weight > 0 ? sum / weight : NAN; }
 
 /* The values of a cell; `size` is its area times the number of snapshots. */
-static void cell_values(const struct total *total, enum map_kind kind, double size,
+static void cell_values(const struct total *whole, enum map_kind kind, double size, bool smooth,
                         double values[static 2])
 {
+    static const struct total nothing;
+    const bool sums = kind == MAP_density || kind == MAP_area_fraction;
+    const struct total *total = !sums && smooth && whole->count < weight_least ? &nothing : whole;
     values[1] = 0;
     switch (kind) {
     case MAP_density: values[0] = size > 0 ? total->count / size : 0; break;
@@ -254,7 +262,7 @@ static void cell_values(const struct total *total, enum map_kind kind, double si
     }
 }
 
-/* "granular temperature [cm^2/s^2], mean t = 1 .. 2 s" */
+/* "granular temperature (cm^2/s^2), mean t = 1 .. 2 s" */
 static void set_label(const struct map *map, enum map_kind kind, struct field *field)
 {
     const char *unit = scene_unit(map->scene, kinds[kind].dimension);
@@ -268,7 +276,7 @@ static void set_label(const struct map *map, enum map_kind kind, struct field *f
     snprintf(field->name, sizeof field->name, "%s", kinds[kind].name);
     snprintf(field->unit, sizeof field->unit, "%s", unit);
     snprintf(field->label, sizeof field->label, "%s%s%s%s, %s%s%s", kinds[kind].label,
-             *unit ? " [" : "", unit, *unit ? "]" : "", when, *second ? " " : "", second);
+             *unit ? " (" : "", unit, *unit ? ")" : "", when, *second ? " " : "", second);
     field->time = map->to;
 }
 
@@ -293,7 +301,8 @@ bool map_field(const struct map *map, enum map_kind kind, struct field *field,
         const double share = map_kernel_share(grid, (uint32_t)(k % grid->nx),
                                               (uint32_t)(k / grid->nx));
         double values[2];
-        cell_values(&total, kind, share * grid->cell * grid->cell * map->snapshots, values);
+        cell_values(&total, kind, share * grid->cell * grid->cell * map->snapshots,
+                    grid->kernel != KERNEL_BOX, values);
         for (uint32_t c = 0; c < field->components; c++) field->values[c * cells + k] = values[c];
     }
     return true;

@@ -4,6 +4,7 @@
  * Gauss, Lucy) and turned into fields at the end, so averages over time weight every grain
  * alike.  The granular temperature of an average is taken about the mean velocity of the cell
  * over the whole time; that of a snapshot about the velocity at that instant.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef MAP_H
 #define MAP_H

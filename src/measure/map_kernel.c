@@ -2,6 +2,7 @@
  *
  * Lengths are in cells here, measured from the corner of the box.  A periodic box is unrolled:
  * cell k stands for cell k mod nx, shifted by whole boxes.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "measure/map_kernel.h"
 

@@ -2,6 +2,7 @@
  *
  * Every kernel hands out weights that sum to one over the cells of the box, near walls too, so
  * number, mass, momentum and energy on the grid are those of the grains.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef MAP_KERNEL_H
 #define MAP_KERNEL_H

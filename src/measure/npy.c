@@ -1,4 +1,4 @@
-/* npy.c - see npy.h; the format is NumPy's NEP 1. */
+/* npy.c - see npy.h; the format is NumPy's NEP 1.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measure/npy.h"
 
 #include "base/file.h"

@@ -2,6 +2,7 @@
  *
  * A file is a magic word, a Python dictionary in text (type, order, shape) and the bare values,
  * little-endian, last index fastest.  Loading trusts nothing: type, shape and size must agree.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef NPY_H
 #define NPY_H

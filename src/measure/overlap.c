@@ -1,4 +1,4 @@
-/* overlap.c - see overlap.h. */
+/* overlap.c - see overlap.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measure/overlap.h"
 
 #include <math.h>

@@ -2,6 +2,7 @@
  *
  * Differences of four corners give the area in a rectangle, so the parts of a disc that is cut by
  * a grid telescope: they sum to the whole disc to rounding.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef OVERLAP_H
 #define OVERLAP_H

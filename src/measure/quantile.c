@@ -1,4 +1,4 @@
-/* quantile.c - see quantile.h. */
+/* quantile.c - see quantile.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measure/quantile.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
  * A histogram whose bins are the leading bits of a double: 128 bins in each factor of two, so a
  * percentile is right to 1/256 (0.4 %) of its value whatever the range.  Counts are whole numbers:
  * neither the order of adding nor the way of merging changes the answer.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef QUANTILE_H
 #define QUANTILE_H

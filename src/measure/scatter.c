@@ -1,4 +1,4 @@
-/* scatter.c - see scatter.h. */
+/* scatter.c - see scatter.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measure/scatter.h"
 
 #include "measure/stats.h"

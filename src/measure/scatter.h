@@ -3,6 +3,7 @@
  * Angles are degrees from the direction of the stream, which points along +x: 0 lies right behind
  * the obstacle.  Mass is dm / dTheta per radian over the mass that entered, so its integral is the
  * share that has crossed the screen; momentum |p| and angular momentum L are means per grain.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef SCATTER_H
 #define SCATTER_H

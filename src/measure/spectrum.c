@@ -1,4 +1,4 @@
-/* spectrum.c - see spectrum.h. */
+/* spectrum.c - see spectrum.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measure/spectrum.h"
 
 #include <assert.h>

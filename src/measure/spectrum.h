@@ -6,6 +6,7 @@
  * diameter.  S is 1 for an ideal gas at every k; clusters show as an increase at small k.  The
  * grid is exact for wavelengths of many boxes and loses power, at most sinc^2 of half a box along
  * each axis, towards the shortest.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef SPECTRUM_H
 #define SPECTRUM_H

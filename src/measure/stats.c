@@ -1,4 +1,4 @@
-/* stats.c - see stats.h. */
+/* stats.c - see stats.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measure/stats.h"
 
 #include <assert.h>

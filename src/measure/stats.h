@@ -1,5 +1,6 @@
 /* stats.h - means of series with errors that know of correlation, and fits of lines and parabolas
- * with the errors of what is fitted. */
+ * with the errors of what is fitted.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef STATS_H
 #define STATS_H
 

@@ -2,6 +2,7 @@
  *
  * Arrays lie inline as base64 of their byte count (UInt64) and their values, so the file stays
  * well-formed XML and keeps every bit.  Cells without a value are NAN, which ParaView can colour.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "measure/vti.h"
 

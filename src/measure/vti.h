@@ -1,4 +1,5 @@
-/* vti.h - maps as VTK ImageData (XML), for ParaView and VTK; written without the VTK library. */
+/* vti.h - maps as VTK ImageData (XML), for ParaView and VTK; written without the VTK library.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef VTI_H
 #define VTI_H
 

@@ -1,4 +1,5 @@
-/* counters.h - running totals of a model, listed once: struct, log columns and help. */
+/* counters.h - running totals of a model, listed once: struct, log columns and help.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef COUNTERS_H
 #define COUNTERS_H
 
@@ -16,7 +17,7 @@
     X(tangential,         "tangential forces evaluated")                                \
     X(rebuilds,           "neighbour lists or queues made anew")
 
-/* X(name, dimension, what it is) - sums over the grains now; NAN where the model has no such thing */
+/* X(name, dimension, what it is) - sums over the grains now; NAN where a model has no such thing */
 #define QUANTITIES(X)                                                                   \
     X(kinetic_energy,     "energy",   "of translation")                                 \
     X(rotational_energy,  "energy",   "of rotation")                                    \

@@ -1,4 +1,4 @@
-/* field.c - see field.h. */
+/* field.c - see field.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/field.h"
 
 #include <stdlib.h>
@@ -9,7 +9,8 @@ bool field_create(struct field *field, double x0, double y0, double cell, uint32
     *field = (struct field){.x0 = x0, .y0 = y0, .cell = cell, .nx = nx, .ny = ny,
                             .components = components};
     field->values = calloc((size_t)nx * ny * components, sizeof *field->values);
-    return field->values || error_set(error, "not enough memory for a map of %u x %u cells", nx, ny);
+    return field->values
+        || error_set(error, "not enough memory for a map of %u x %u cells", nx, ny);
 }
 
 void field_free(struct field *field)

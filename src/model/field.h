@@ -1,4 +1,5 @@
-/* field.h - numbers on a rectangular grid: what maps are made of. */
+/* field.h - numbers on a rectangular grid: what maps are made of.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef FIELD_H
 #define FIELD_H
 

@@ -1,4 +1,4 @@
-/* grains.c - see grains.h. */
+/* grains.c - see grains.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/grains.h"
 
 bool grains_create(struct grains *grains, uint32_t capacity, uint32_t contact_capacity,

@@ -2,6 +2,7 @@
  *
  * The caller owns the arrays and says what it wants by which pointers are set; NULL is skipped.
  * grains_create() makes one with everything.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef GRAINS_H
 #define GRAINS_H

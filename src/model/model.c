@@ -1,12 +1,13 @@
-/* model.c - the list of models; nothing else in sandreel names one. */
+/* model.c - the list of models; nothing else in sandreel names one.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/model.h"
 
 #include <stdio.h>
 #include <string.h>
 
-extern const struct model model_lga, model_md;
+extern const struct model model_dsmc, model_ed, model_lga, model_md;
 
-const struct model *const model_list[] = {&model_md, &model_lga, NULL};
+const struct model *const model_list[] = {&model_md, &model_ed, &model_dsmc, &model_lga, NULL};
 
 const struct model *model_find(const char *name)
 {

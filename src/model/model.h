@@ -2,6 +2,7 @@
  *
  * A model is one constant `struct model`; its running state is private to its own folder.
  * Everything outside talks to a `struct simulation` (simulation.h), never to a model's functions.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef MODEL_H
 #define MODEL_H

@@ -1,4 +1,4 @@
-/* simulation.c - see simulation.h. */
+/* simulation.c - see simulation.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/simulation.h"
 
 #include <assert.h>

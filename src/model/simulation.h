@@ -2,6 +2,7 @@
  *
  * It refuses what a model cannot do, carries the state across phases, and packs and unpacks
  * checkpoints; all of it the same for every model.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef SIMULATION_H
 #define SIMULATION_H

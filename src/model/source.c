@@ -1,4 +1,4 @@
-/* source.c - see source.h. */
+/* source.c - see source.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/source.h"
 
 #include "base/rng.h"

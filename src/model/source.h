@@ -3,6 +3,7 @@
  * A source gives batches: one grain of a point source, one column of a stream.  Batch k is a pure
  * function of the scene's seed, the source and k, so nothing but k needs to be remembered, and
  * the stream does not depend on when or how often somebody asks.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef SOURCE_H
 #define SOURCE_H

@@ -1,4 +1,4 @@
-/* tally.c - see tally.h. */
+/* tally.c - see tally.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/tally.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
  *
  * All sums start at zero and only grow, so two looks give the mean between them:
  * F = (impulse(t2) - impulse(t1)) / (t2 - t1).
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef TALLY_H
 #define TALLY_H

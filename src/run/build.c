@@ -1,4 +1,7 @@
-/* build.c - see build.h.  The versions are those of the libraries that run, where they tell. */
+/* build.c - see build.h.  The versions are those of the libraries that run, where they tell.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/build.h"
 
 #include <libconfig.h>

@@ -1,4 +1,7 @@
-/* build.h - what this program is made of: its version and those of its libraries. */
+/* build.h - what this program is made of: its version and those of its libraries.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef BUILD_H
 #define BUILD_H
 

@@ -1,4 +1,7 @@
-/* checkpoint.c - see checkpoint.h. */
+/* checkpoint.c - see checkpoint.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/checkpoint.h"
 
 #include "base/file.h"

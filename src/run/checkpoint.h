@@ -4,6 +4,8 @@
  * bytes of an archive that holds the simulation and the run's own place in its output.  The
  * older of the two is overwritten, so one good file is always there; loading takes the newer one
  * and falls back to the other when it is torn.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef CHECKPOINT_H
 #define CHECKPOINT_H

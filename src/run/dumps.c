@@ -1,4 +1,7 @@
-/* dumps.c - see dumps.h. */
+/* dumps.c - see dumps.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/dumps.h"
 
 #include "measure/dump.h"

@@ -1,4 +1,7 @@
-/* dumps.h - the frames of a run as grains: written while it runs, read to draw them again. */
+/* dumps.h - the frames of a run as grains: written while it runs, read to draw them again.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef DUMPS_H
 #define DUMPS_H
 

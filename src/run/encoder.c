@@ -1,4 +1,7 @@
-/* encoder.c - see encoder.h. */
+/* encoder.c - see encoder.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/encoder.h"
 
 #include "base/file.h"

@@ -3,6 +3,8 @@
  * A bounded queue between the one thread that draws and the threads that encode: when it is full
  * the drawing waits, so memory stays bounded.  What a file holds depends on the picture alone,
  * never on which thread encoded it or when.  Without threads it works in place.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef ENCODER_H
 #define ENCODER_H

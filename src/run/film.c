@@ -1,4 +1,7 @@
-/* film.c - see film.h. */
+/* film.c - see film.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/film.h"
 
 #include <assert.h>

@@ -3,6 +3,8 @@
  * Colours mean the same in every frame of a film.  A range that the scene fixes is there from the
  * start; otherwise the film is shown all its frames first (film_gather) and takes the 99th
  * percentile, so that a few fast grains do not darken all others.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef FILM_H
 #define FILM_H

@@ -1,4 +1,7 @@
-/* folder.c - see folder.h. */
+/* folder.c - see folder.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/folder.h"
 
 #include <dirent.h>
@@ -95,5 +98,9 @@ bool folder_claim(const char *directory, bool force, struct error *error)
         folder_clear(directory, folders[k]);
     }
     for (size_t k = 0; k < sizeof files / sizeof *files; k++) folder_remove(directory, files[k]);
+    char screen[FILE_PATH_MAX];
+    for (unsigned k = 0; file_exists(folder_path(screen, directory, "screen%u.csv", k)); k++) {
+        unlink(screen);
+    }
     return true;
 }

@@ -1,4 +1,7 @@
-/* folder.h - the directory of a run: where everything lies, and who may write there. */
+/* folder.h - the directory of a run: where everything lies, and who may write there.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef FOLDER_H
 #define FOLDER_H
 

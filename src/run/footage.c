@@ -1,4 +1,7 @@
-/* footage.c - see footage.h. */
+/* footage.c - see footage.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/footage.h"
 
 #include "base/clock.h"

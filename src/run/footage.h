@@ -1,5 +1,8 @@
 /* footage.h - grains at a time, from a run's dumps or simulated on the fly: what frame, movie and
- * map draw from, without asking which. */
+ * map draw from, without asking which.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef FOOTAGE_H
 #define FOOTAGE_H
 

@@ -1,4 +1,7 @@
-/* logbook.c - see logbook.h. */
+/* logbook.c - see logbook.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/logbook.h"
 
 #include <errno.h>

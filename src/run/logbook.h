@@ -2,6 +2,8 @@
  *
  * A row is written whole and flushed, so the file can be watched while it grows.  After a
  * checkpoint is loaded the file is cut back to the rows that the checkpoint knew.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef LOGBOOK_H
 #define LOGBOOK_H

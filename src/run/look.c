@@ -1,4 +1,7 @@
-/* look.c - see look.h. */
+/* look.c - see look.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/look.h"
 
 static bool make_room(struct grains *grains, uint32_t count, uint32_t contacts,

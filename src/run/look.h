@@ -1,4 +1,7 @@
-/* look.h - a look at a simulation with arrays that are always large enough. */
+/* look.h - a look at a simulation with arrays that are always large enough.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef LOOK_H
 #define LOOK_H
 

@@ -1,4 +1,7 @@
-/* manifest.c - see manifest.h. */
+/* manifest.c - see manifest.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/manifest.h"
 
 #include "run/build.h"

@@ -1,4 +1,7 @@
-/* manifest.h - manifest.json: what a run was made of and with, and what it cost. */
+/* manifest.h - manifest.json: what a run was made of and with, and what it cost.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef MANIFEST_H
 #define MANIFEST_H
 

@@ -1,4 +1,7 @@
-/* mapper.c - see mapper.h. */
+/* mapper.c - see mapper.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/mapper.h"
 
 #include "measure/csv.h"
@@ -73,7 +76,9 @@ static bool choose_kinds(struct mapper *mapper, const struct measure *measure,
 bool mapper_open(struct mapper *mapper, const struct scene *scene, const struct view *view,
                  const struct measure *measure, unsigned formats, struct error *error)
 {
-    *mapper = (struct mapper){.scene = scene, .view = map_view(view), .formats = formats};
+    *mapper = (struct mapper){.scene = scene, .view = map_view(view), .formats = formats,
+                               .grains = {.name = "n"},
+                               .range = {measure->range[0], measure->range[1]}};
     if (!choose_kinds(mapper, measure, error)) return false;
     mapper->map = map_create(scene, measure, error);
     return mapper->map != NULL;
@@ -92,6 +97,7 @@ void mapper_clear(struct mapper *mapper) { map_clear(mapper->map); }
 void mapper_add(struct mapper *mapper, const struct grains *grains)
 {
     map_add(mapper->map, grains);
+    snprintf(mapper->grains.text, sizeof mapper->grains.text, "%u", grains->count);
 }
 
 static bool draw(struct mapper *mapper, const struct field *field, const char *path,
@@ -108,7 +114,8 @@ static bool draw(struct mapper *mapper, const struct field *field, const char *p
     const struct picture picture = {
         .scene = scene_at(mapper->scene, field->time), .view = &mapper->view, .field = field,
         .time = field->time, .range = {NAN, NAN},
-        .field_range = {mapper->view.range[0], mapper->view.range[1]},
+        .variables = &mapper->grains, .variable_count = 1,
+        .field_range = {mapper->range[0], mapper->range[1]},
     };
     const struct image_note notes[] = {{"Software", "sandreel"}, {"Scene", mapper->scene->name},
                                        {"Map", field->label}};

@@ -1,4 +1,7 @@
-/* mapper.h - field maps as files: PNG with a colour bar, .npy, VTI and CSV. */
+/* mapper.h - field maps as files: PNG with a colour bar, .npy, VTI and CSV.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef MAPPER_H
 #define MAPPER_H
 
@@ -23,11 +26,13 @@ struct mapper {
     const struct scene *scene;
     struct view     view;
     struct map     *map;
+    double          range[2];           /* of the colours; NANs: each map its own */
     struct painter *painter;            /* made when the first picture is asked for */
     struct image    image;
     unsigned        formats;            /* 1 << MAPPER_BIT_... */
     int             kinds[MAP_KINDS];
-    uint32_t        kind_count, added;
+    uint32_t        kind_count;
+    struct painter_variable grains;     /* {n} of labels: the last that were added */
 };
 
 /* "png,npy" as a set of bits; false if a word is unknown. */

@@ -1,4 +1,7 @@
-/* movie.c - see movie.h. */
+/* movie.c - see movie.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/movie.h"
 
 #include "base/file.h"

@@ -3,6 +3,8 @@
  * The ending of the name decides: .mp4 (H.264), .webm (VP9) or .gif.  No shell is involved, and
  * ffmpeg runs in a process group of its own, so Ctrl-C reaches sandreel alone, which then decides.
  * The caller must ignore SIGPIPE.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef MOVIE_H
 #define MOVIE_H

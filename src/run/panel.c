@@ -1,4 +1,7 @@
-/* panel.c - see panel.h. */
+/* panel.c - see panel.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/panel.h"
 
 #include "run/folder.h"

@@ -3,6 +3,8 @@
  * A panel is a scene under one model, or a run.  If the colours need the whole film first, every
  * panel is recorded (dumped beside the movie, removed afterwards) and then drawn, all with the
  * same range where they show the same quantity.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef PANEL_H
 #define PANEL_H

@@ -1,4 +1,7 @@
-/* parts.c - see parts.h. */
+/* parts.c - see parts.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/parts.h"
 
 #include "base/clock.h"

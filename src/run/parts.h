@@ -1,4 +1,7 @@
-/* parts.h - where the time of a run goes: wall and processor seconds of each part. */
+/* parts.h - where the time of a run goes: wall and processor seconds of each part.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef PARTS_H
 #define PARTS_H
 

@@ -1,4 +1,7 @@
-/* recall.c - see recall.h. */
+/* recall.c - see recall.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/recall.h"
 
 #include "run/folder.h"

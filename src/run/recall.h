@@ -1,4 +1,7 @@
-/* recall.h - what an earlier run remembers in its manifest.json. */
+/* recall.h - what an earlier run remembers in its manifest.json.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #ifndef RECALL_H
 #define RECALL_H
 

@@ -2,6 +2,8 @@
  *
  * The model advances in pieces of about a twentieth of a second, so that signals, the time limit
  * and progress are served in time; splitting never changes the state (model.h).
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "run/run.h"
 

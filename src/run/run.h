@@ -3,6 +3,8 @@
  * Prints nothing: progress and warnings go to callbacks.  What it does beside the model never
  * changes the model's state: a run that is watched, interrupted and resumed, or encoded by more
  * threads ends with the same bytes.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef RUN_H
 #define RUN_H

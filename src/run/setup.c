@@ -1,4 +1,7 @@
-/* setup.c - see setup.h. */
+/* setup.c - see setup.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/setup.h"
 
 #include "base/file.h"

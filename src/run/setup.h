@@ -2,6 +2,8 @@
  *
  * The scene knows no models and a model knows no files; here they meet, so that `check` tells
  * everything at once: the scene's findings, the model's, and what the model cannot do.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef SETUP_H
 #define SETUP_H

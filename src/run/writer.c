@@ -1,7 +1,11 @@
-/* writer.c - see writer.h. */
+/* writer.c - see writer.h.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
 #include "run/writer.h"
 
 #include "base/file.h"
+#include "measure/csv.h"
 #include "run/folder.h"
 #include "run/look.h"
 #include "run/recall.h"
@@ -251,13 +255,29 @@ static bool movie_from_frames(struct writer *writer, struct error *error)
     return done;
 }
 
+/* What crossed each screen, by angle: sums over the whole run, hence only at its end. */
+static bool save_screens(const struct writer *writer, struct error *error)
+{
+    const struct tally *tally = simulation_tally(writer->sim);
+    bool done = true;
+    for (uint32_t k = 0; tally && done && k < tally->screen_count && tally->mass_in > 0; k++) {
+        struct scatter scatter;
+        char path[FILE_PATH_MAX];
+        folder_path(path, writer->directory, "screen%u.csv", k);
+        done = scatter_create(&tally->screens[k], tally->mass_in, &scatter, error)
+            && csv_save_scatter(path, &scatter, writer->sim->scene, error);
+        scatter_free(&scatter);
+    }
+    return done;
+}
+
 bool writer_finish(struct writer *writer, double wall, bool (*step)(void *, uint64_t, uint64_t),
                    void *context, struct error *error)
 {
     const enum part before = enter(writer, PART_files);
     bool done = true;
     if (writer->draws_later) done = draw_dumps(writer, wall, step, context, error);
-    done = done && writer_sync(writer, error);
+    done = done && writer_sync(writer, error) && save_screens(writer, error);
     if (done && writer->movie_late) done = movie_from_frames(writer, error);
     if (done && writer->movie) {
         done = movie_commit(writer->movie, error);

@@ -3,6 +3,8 @@
  * Every output has its own interval in simulated time and happens at whole multiples of it; all
  * of it only looks at the simulation.  When the colours of the frames are only known after the
  * whole run, the grains are dumped and the frames drawn at the end.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef WRITER_H
 #define WRITER_H

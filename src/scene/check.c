@@ -1,4 +1,4 @@
-/* check.c - see check.h. */
+/* check.c - see check.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/check.h"
 
 #include "scene/place.h"
@@ -147,6 +147,25 @@ static void check_placement(struct check check, const struct placement *placemen
     }
 }
 
+/* What begins behind a screen is gone at once, and the stream is thinner than it says. */
+static void check_source_screens(struct check check, const struct source *source)
+{
+    const double *v = source->velocity, speed = hypot(v[0], v[1]), half = source->width / 2;
+    const bool stream = source->kind == SOURCE_STREAM && speed > 0;
+    const double ex = stream ? -v[1] / speed : 1, ey = stream ? v[0] / speed : 0;
+    for (uint32_t k = 0; k < 2 * check.scene->screen_count; k++) {
+        const struct screen *screen = &check.scene->screens[k / 2];
+        const double side = k % 2 ? half : -half;
+        const double x = source->position[0] + side * ex, y = source->position[1] + side * ey;
+        const bool behind = screen->kind == SCREEN_LINE ? x > screen->x
+            : hypot(x - screen->center[0], y - screen->center[1]) > screen->radius;
+        if (!behind) continue;
+        ERROR("position", "grains that enter at (%g, %g) are behind screens.[%u] and vanish at "
+              "once; enlarge the screen, or move the source", x, y, k / 2);
+        return;
+    }
+}
+
 static void check_source(struct check check, const struct source *source)
 {
     const double *box = check.scene->box, *p = source->position;
@@ -175,6 +194,7 @@ static void check_source(struct check check, const struct source *source)
     if (source->kind == SOURCE_STREAM && !(speed > 0)) {
         ERROR("velocity", "a stream needs a 'velocity', or its first column never makes room");
     }
+    check_source_screens(check, source);
 }
 
 /* ---- walls --------------------------------------------------------------------------------- */

@@ -1,4 +1,5 @@
-/* check.h - what no table row can tell: keys that contradict each other or the geometry. */
+/* check.h - what no table row can tell: keys that contradict each other or the geometry.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef CHECK_SCENE_H
 #define CHECK_SCENE_H
 

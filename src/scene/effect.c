@@ -1,4 +1,4 @@
-/* effect.c - see effect.h. */
+/* effect.c - see effect.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/effect.h"
 
 #include <stdio.h>

@@ -3,6 +3,7 @@
  * Effects are derived from a scene by scene/check (never written by the user), told by
  * `check --explain`, decided once in a model's create, and compared with what a model can do in
  * one place (model/simulation.c).
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef EFFECT_H
 #define EFFECT_H

@@ -1,4 +1,4 @@
-/* findings.c - see findings.h. */
+/* findings.c - see findings.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/findings.h"
 
 #include "scene/scene.h"

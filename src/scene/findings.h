@@ -2,6 +2,7 @@
  *
  * Each finding names the place, what, why and the cure:
  *     hourglass.cfg:14: error: unknown key 'grains.restituton'; did you mean 'restitution'?
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef FINDINGS_H
 #define FINDINGS_H

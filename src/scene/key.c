@@ -1,4 +1,5 @@
-/* key.c - see key.h: words about keys, for findings and help. */
+/* key.c - see key.h: words about keys, for findings and help.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/key.h"
 
 #include <math.h>

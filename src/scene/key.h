@@ -4,6 +4,7 @@
  * A group (the top level, `box`, an entry of `grains`, `md`, ...) is a C struct and a table of
  * rows that say where each key lives in it.  Models bring their own group (struct model), so the
  * parser knows none of them.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef KEY_H
 #define KEY_H

@@ -3,6 +3,7 @@
  * The path may pass through groups and lists that are not there yet: a name is added to its
  * group, an index one past the end to its list.  Whether the key is known at all is found when
  * the tree is parsed, with the nearest known key.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "scene/override.h"
 

@@ -1,4 +1,5 @@
-/* override.h - "KEY=VALUE" laid over the tree of a scene: -s, quick_set and phases. */
+/* override.h - "KEY=VALUE" laid over the tree of a scene: -s, quick_set and phases.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef OVERRIDE_H
 #define OVERRIDE_H
 

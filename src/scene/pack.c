@@ -6,6 +6,7 @@
  * are a little too large in this (MARGIN), so once the remaining overlaps are below it, the true
  * discs do not overlap at all.  If they jam, they are shaken again, longer; the number of tries
  * and of steps is bounded.  Unit of length: the mean diameter; mass and stiffness are 1.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "scene/pack.h"
 

@@ -1,4 +1,5 @@
-/* pack.h - random packings without overlap, up to dense ones. */
+/* pack.h - random packings without overlap, up to dense ones.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef PACK_H
 #define PACK_H
 

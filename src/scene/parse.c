@@ -1,4 +1,4 @@
-/* parse.c - see parse.h. */
+/* parse.c - see parse.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/parse.h"
 
 #include "scene/scene_key.h"

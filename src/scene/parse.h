@@ -1,4 +1,5 @@
-/* parse.h - from the tree of what was written to the structs, through the key tables. */
+/* parse.h - from the tree of what was written to the structs, through the key tables.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef PARSE_H
 #define PARSE_H
 

@@ -1,4 +1,4 @@
-/* place.h - the grains that are there at the start. */
+/* place.h - the grains that are there at the start.  SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef PLACE_H
 #define PLACE_H
 

@@ -1,4 +1,4 @@
-/* resolve.c - see resolve.h. */
+/* resolve.c - see resolve.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/resolve.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* resolve.h - what follows from the keys: flat walls, radii, capacity. */
+/* resolve.h - what follows from the keys: flat walls, radii, capacity.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef RESOLVE_H
 #define RESOLVE_H
 

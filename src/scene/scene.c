@@ -3,6 +3,7 @@
  * Read the text into a tree, lay quick_set and the overrides over it, parse the tree through the
  * key tables, derive what follows, check, place.  A phase is the same text read once more with
  * the overrides of the phases up to it; it shares the placed grains of the whole scene.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "scene/scene.h"
 
@@ -342,6 +343,7 @@ static const char *const unit_words[][3] = {
     {"stress", "N/m", "dyn/cm"},        {"speed^2", "m^2/s^2", "cm^2/s^2"},
     {"1/time^2", "1/s^2", "1/s^2"},     {"angular momentum", "kg m^2/s", "g cm^2/s"},
     {"temperature", "m^2/s^2", "cm^2/s^2"}, {"mass/time", "kg/s", "g/s"},
+    {"force/length", "N/m", "dyn/cm"},  {"torque", "N m", "dyn cm"},
 };
 
 const char *scene_unit(const struct scene *scene, const char *dimension)

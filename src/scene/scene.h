@@ -5,6 +5,7 @@
  * times and masses are in the scene's own units.  What a scene does not mention does not exist.
  * The structs below are the targets of the key tables in scene_keys.c; docs/scenes.md is written
  * from the same tables.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef SCENE_H
 #define SCENE_H
@@ -139,6 +140,7 @@ struct measure {
     int    kernel;              /* enum kernel */
     double width;               /* kernel length; NAN: one cell */
     double average[2];          /* maps are averaged from, to; NANs: snapshots */
+    double range[2];            /* of the colours of maps; NANs: each map its own */
     bool   collisions;          /* count contacts for each grain */
     double collision_window;    /* over which a rate is formed; NAN: the frame interval */
 };

@@ -1,5 +1,6 @@
 /* scene_explain.c - which effects a scene calls for, and by which key: derived here and nowhere
- * else. */
+ * else.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_explain.h"
 
 #include "scene/resolve.h"

@@ -1,4 +1,5 @@
-/* scene_explain.h - the effects that a scene calls for (see scene_explain in scene.h). */
+/* scene_explain.h - the effects that a scene calls for (see scene_explain in scene.h).
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef SCENE_EXPLAIN_H
 #define SCENE_EXPLAIN_H
 

@@ -1,4 +1,5 @@
-/* scene_key.c - every key of a scene file, once: see key.h for what a row says. */
+/* scene_key.c - every key of a scene file, once: see key.h for what a row says.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_key.h"
 
 #include <math.h>
@@ -185,6 +186,8 @@ static const struct key measure_keys[] = {
     REAL(measure, width, "nan", KEY_POSITIVE, FAR, "length", "of the kernel; absent: one cell"),
     VECTOR(measure, average, "nan", 0, FAR, "time",
            "maps are averaged from, to; absent: snapshots"),
+    VECTOR(measure, range, "nan", -FAR, FAR, "",
+           "of the colours of maps; absent: each map its own"),
     BOOL(measure, collisions, "false", "count the contacts of each grain"),
     REAL(measure, collision_window, "nan", KEY_POSITIVE, FAR, "time",
          "over which a rate is formed; absent: the time between frames"),

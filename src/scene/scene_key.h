@@ -1,4 +1,5 @@
-/* scene_key.h - the sections of a scene file: which group fills which part of struct scene. */
+/* scene_key.h - the sections of a scene file: which group fills which part of struct scene.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef SCENE_KEY_H
 #define SCENE_KEY_H
 

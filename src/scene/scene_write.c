@@ -3,6 +3,7 @@
  * Values that stand for "chosen when absent" or "never" (nan, inf) cannot be written, nor can an
  * empty outline: such keys are left out, with the reason as a comment.  Numbers have as many
  * digits as reading them back needs.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "base/file.h"
 #include "scene/scene.h"

@@ -3,6 +3,7 @@
  * libconfig wants all values in [brackets] to be of one type, so [0, 0.5] would be an error; as
  * (parentheses) it is none.  Brackets outside strings and comments are therefore read as
  * parentheses, which keeps every line where it was.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "scene/tree.h"
 

@@ -3,6 +3,7 @@
  * libconfig parses; its result is copied into this tree, because overrides must be able to add
  * and replace any value, and findings need the place of each.  The tree stays with the scene as
  * its record of where every key was given.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef TREE_H
 #define TREE_H

@@ -1,4 +1,4 @@
-/* wall.c - see wall.h. */
+/* wall.c - see wall.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/wall.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
  * for every model.  Segments and arcs have no thickness and stop grains on both sides; a disc is
  * solid.  Where two pieces share an end point they are `joined`, so that a grain at the joint is
  * not pushed twice.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef WALL_H
 #define WALL_H

@@ -31,7 +31,8 @@ static const struct key keys[] = {
      "distance of nodes; when absent one mean diameter, with gmlg sqrt(7) of them, so that seven "
      "grains fill a node"},
     {"tick", KEY_REAL, ROW(tick), "nan", KEY_POSITIVE, NAN, "time", NULL,
-     "duration of a tick, in which a mover goes one spacing; when absent a fall through the box takes "
+     "duration of a tick, in which a mover goes one spacing; "
+     "when absent a fall through the box takes "
      "as long as free fall, and without gravity movers are as fast as the grains at the start"},
     {"k", KEY_REAL, ROW(k), "nan", 0, 1, "1", NULL,
      "share of collisions that lose energy; when absent 1 - restitution^2"},
@@ -443,10 +444,11 @@ static void lga_archive(void *state, struct archive *archive)
 
 const struct model model_lga = {
     .name     = "lga",
-    .summary  = "Grains that hop on a triangular lattice, seven to a node: the fastest flow of sand.",
+    .summary  = "Grains that hop on a triangular lattice, "
+                "seven to a node: the fastest flow of sand.",
     .work     = "ticks",
-    /* Friction is the lattice's own: its slopes stand without a coefficient, and `s` says how firmly
-     * a grain with one-sided support holds. */
+    /* Friction is the lattice's own: its slopes stand without a coefficient, and `s` says how
+     * firmly a grain with one-sided support holds. */
     .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_FRICTION | EFFECT_POLYDISPERSE
               | EFFECT_PERIODIC | EFFECT_WALLS | EFFECT_GATES | EFFECT_INFLOW | EFFECT_OUTFLOW,
     .settings = &group,

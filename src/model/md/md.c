@@ -1,4 +1,5 @@
-/* md.c - the soft-disc model: create, advance, archive. */
+/* md.c - the soft-disc model: create, advance, archive.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/md/md.h"
 
 #include "model/md/md_fault.h"

@@ -8,6 +8,7 @@
  *
  * Time runs in leapfrog: `hx hy hrim` are velocities half a step back, `ux uy rim` the ones
  * predicted for now, u = h + a dt/2, which velocity-dependent forces read (second order).
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef MD_H
 #define MD_H

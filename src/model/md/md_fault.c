@@ -2,6 +2,7 @@
  *
  * The contact loop counts overlaps that could be too large even for the smallest grain; only
  * when there is one are all contacts looked at, where they were when the force was computed.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/md/md_fault.h"
 

@@ -1,4 +1,5 @@
-/* md_fault.h - notices when the state stops being physical, and says which grain and why. */
+/* md_fault.h - notices when the state stops being physical, and says which grain and why.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef MD_FAULT_H
 #define MD_FAULT_H
 

@@ -2,6 +2,7 @@
  *
  * Grains leave when the list is made anew, that is before any has moved farther than half the
  * skin.  One that leaves is marked by zero inverse mass and dropped by the sort.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/md/md_flow.h"
 

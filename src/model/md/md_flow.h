@@ -1,4 +1,5 @@
-/* md_flow.h - grains that enter and leave; only between two neighbour lists. */
+/* md_flow.h - grains that enter and leave; only between two neighbour lists.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef MD_FLOW_H
 #define MD_FLOW_H
 

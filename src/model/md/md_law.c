@@ -1,4 +1,4 @@
-/* md_law.c - see md_law.h. */
+/* md_law.c - see md_law.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/md/md_law.h"
 
 #include "scene/resolve.h"

@@ -15,6 +15,7 @@
  * The point of contact divides the line of centres as the radii do, so the lever of a tangential
  * force is R d / (R_i + R_j), d the distance: with R itself (004 eq. 10) a pair would not keep
  * its angular momentum while it overlaps.  Slip speeds use the same lever.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef MD_LAW_H
 #define MD_LAW_H

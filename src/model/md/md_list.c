@@ -4,6 +4,7 @@
  * Grains are sorted by cell, the shorter side of the box running fastest; a pair belongs to the
  * grain of lower index.  Strips (md.h) list their pairs side by side, each into its own stretch
  * of a scratch array, and the stretches are then pushed together.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/md/md_list.h"
 

@@ -1,4 +1,5 @@
-/* md_list.h - who may touch whom: the neighbour list, made anew when grains have moved enough. */
+/* md_list.h - who may touch whom: the neighbour list, made anew when grains have moved enough.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef MD_LIST_H
 #define MD_LIST_H
 

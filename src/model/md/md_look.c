@@ -1,4 +1,4 @@
-/* md_look.c - see md_look.h. */
+/* md_look.c - see md_look.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/md/md_look.h"
 
 #include "model/md/md_walls.h"
@@ -105,7 +105,8 @@ static void show_contacts(const struct md *md, const int64_t *entry, struct grai
     struct md_wall_touch touches[GROUP_MAX];
     for (uint32_t k = 0; k < md->wall_link_count;) {
         const uint32_t first = k, i = md->wall_links[k].grain;
-        while (k < md->wall_link_count && md->wall_links[k].grain == i && k - first < GROUP_MAX) k++;
+        while (k < md->wall_link_count && md->wall_links[k].grain == i
+               && k - first < GROUP_MAX) k++;
         if (entry[i] == OUTSIDE) continue;
         md_walls_touch(md, first, k, 0, touches);
         for (uint32_t o = 0; o < k - first; o++) {
@@ -180,7 +181,8 @@ void md_look_count(const void *state, struct counters *out)
     struct md_wall_touch touches[GROUP_MAX];
     for (uint32_t k = 0; k < md->wall_link_count;) {
         const uint32_t first = k, i = md->wall_links[k].grain;
-        while (k < md->wall_link_count && md->wall_links[k].grain == i && k - first < GROUP_MAX) k++;
+        while (k < md->wall_link_count && md->wall_links[k].grain == i
+               && k - first < GROUP_MAX) k++;
         md_walls_touch(md, first, k, 0, touches);
         for (uint32_t o = 0; o < k - first; o++) {
             if (!touches[o].counts) continue;

@@ -1,4 +1,5 @@
-/* md_look.h - pictures of the present and sums over the grains; neither changes anything. */
+/* md_look.h - pictures of the present and sums over the grains; neither changes anything.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef MD_LOOK_H
 #define MD_LOOK_H
 

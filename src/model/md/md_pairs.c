@@ -3,6 +3,7 @@
  * Three short loops over a window that stays in the first cache level: which links touch; what
  * the touching ones need, copied side by side; their forces, many at once by SIMD.  The last one
  * is compiled for each combination of effects (STYLE rule 4) and for each width of SIMD unit.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/md/md_pairs.h"
 
@@ -12,7 +13,8 @@ enum { HERTZ = 1, TANGENTIAL = 2, SPRING = 4, MASSES = 8, MIXTURE = 16 };
 
 /* A spring needs a tangential force, a mixture needs masses. */
 #define KERNELS(X) \
-    X(0) X(1) X(2) X(3) X(6) X(7) X(8) X(9) X(10) X(11) X(14) X(15) X(24) X(25) X(26) X(27) X(30) X(31)
+    X(0) X(1) X(2) X(3) X(6) X(7) X(8) X(9) X(10) X(11) X(14) X(15)     \
+    X(24) X(25) X(26) X(27) X(30) X(31)
 
 unsigned md_pairs_kernel(const struct md *md)
 {

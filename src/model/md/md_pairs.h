@@ -1,4 +1,5 @@
-/* md_pairs.h - forces between grains, a window of links at a time. */
+/* md_pairs.h - forces between grains, a window of links at a time.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef MD_PAIRS_H
 #define MD_PAIRS_H
 

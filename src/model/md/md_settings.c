@@ -1,4 +1,5 @@
-/* md_settings.c - the keys of `md`, and how a stiffness and a time step are chosen and judged. */
+/* md_settings.c - the keys of `md`, and how a stiffness and a time step are chosen and judged.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/md/md_settings.h"
 
 #include "model/md/md_law.h"

@@ -1,4 +1,5 @@
-/* md_settings.h - the keys of `md` in a scene file, and what resolve() makes of them. */
+/* md_settings.h - the keys of `md` in a scene file, and what resolve() makes of them.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef MD_SETTINGS_H
 #define MD_SETTINGS_H
 

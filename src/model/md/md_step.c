@@ -8,6 +8,7 @@
  * Verlet: h(t + dt/2) = h(t - dt/2) + a dt; x += h dt; the force reads u = h + a dt/2.
  * Gear: r_k = x^(k) dt^k / k!; predict all, correct by c_k (a dt^2/2 - r_2); 6 values for the
  * position, 4 for the rim's travel (Allen and Tildesley, Computer Simulation of Liquids).
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/md/md_step.h"
 

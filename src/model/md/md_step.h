@@ -1,4 +1,5 @@
-/* md_step.h - one time step, by velocity Verlet or Gear's predictor-corrector. */
+/* md_step.h - one time step, by velocity Verlet or Gear's predictor-corrector.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef MD_STEP_H
 #define MD_STEP_H
 

@@ -4,6 +4,7 @@
  * asks for the nearest point.  At a joint of two walls the end of one counts only if the other is
  * not touched in its interior, and once for both; so a disc passes a polyline's joints as if they
  * were not there, and its tangential spring goes along.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/md/md_walls.h"
 
@@ -204,7 +205,8 @@ static void wall_force(const struct md *md, const struct wall_link *link, const 
                         ? g->radius * wall->radius / (g->radius + wall->radius) : g->radius;
     const struct md_touch contact = {
         .overlap = touch->overlap, .closing = -(ux * nx + uy * ny),
-        .slip = -ux * ny + uy * nx - touch->lever * g->rim, .mass = 1 / g->inverse_mass, .radius = radius,
+        .slip = -ux * ny + uy * nx - touch->lever * g->rim, .mass = 1 / g->inverse_mass,
+        .radius = radius,
         .spring = spring, .dt = dt,
     };
     const struct md_force_out force = md_law_force(&md->law, pair, &contact);

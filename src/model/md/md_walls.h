@@ -1,4 +1,5 @@
-/* md_walls.h - contacts of grains with walls: segments, arcs and discs as exact geometry. */
+/* md_walls.h - contacts of grains with walls: segments, arcs and discs as exact geometry.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef MD_WALLS_H
 #define MD_WALLS_H
 

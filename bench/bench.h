@@ -2,6 +2,8 @@
  *
  * A case sets up what it needs, measures the rest, and tells one number; the caller repeats it and
  * takes the median.  Times are processor seconds of all threads, so a busy machine disturbs less.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #ifndef BENCH_H
 #define BENCH_H

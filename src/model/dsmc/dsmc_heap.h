@@ -1,0 +1,13 @@
+/* dsmc_heap.h - hsmc: grains move one after the other and never into a full cell.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#ifndef DSMC_HEAP_H
+#define DSMC_HEAP_H
+
+#include "model/dsmc/dsmc.h"
+
+/* Moves all grains by one step. */
+void dsmc_heap_sweep(struct dsmc *dsmc);
+
+#endif

@@ -1,0 +1,46 @@
+/* ed_law.c - see ed_law.h: the parameters of every pair of species.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#include "model/ed/ed_law.h"
+
+#include "model/ed/ed.h"
+
+/* A species that leaves its restitution open keeps its energy (resolve tells). */
+static double restitution_of(const struct species *species, const struct ed_settings *settings)
+{
+    if (!isnan(species->restitution)) return species->restitution;
+    return isnan(settings->restitution) ? 1 : settings->restitution;
+}
+
+static struct ed_pair mixed(const struct species *a, const struct species *b,
+                            const struct ed_settings *settings)
+{
+    /* Geometric means, as for soft discs. */
+    const double r2 = restitution_of(a, settings) * restitution_of(b, settings);
+    return (struct ed_pair){sqrt(r2), sqrt(a->friction * b->friction), settings->tangential};
+}
+
+bool ed_law_create(struct ed_law *law, const struct scene *scene,
+                   const struct ed_settings *settings, struct arena *arena)
+{
+    const uint32_t n = scene->species_count;
+    *law = (struct ed_law){.species_count = n, .t_c = settings->t_c,
+                           .exponent = settings->exponent,
+                           .per_speed = 1 / settings->reference_speed};
+    if (!arena_array(arena, &law->pairs, (size_t)n * n)
+        || !arena_array(arena, &law->walls, (size_t)n * n)
+        || !arena_array(arena, &law->inertia_factor, n)) return false;
+    for (uint32_t a = 0; a < n; a++) {
+        law->inertia_factor[a] = scene->species[a].inertia == INERTIA_SPHERE ? 0.4 : 0.5;
+        for (uint32_t b = 0; b < n; b++) {
+            struct ed_pair *pair = &law->pairs[a * n + b], *wall = &law->walls[a * n + b];
+            *pair = *wall = mixed(&scene->species[a], &scene->species[b], settings);
+            if (!isnan(settings->wall_restitution)) wall->restitution = settings->wall_restitution;
+            if (!isnan(settings->wall_friction)) wall->friction = settings->wall_friction;
+            if (!isnan(settings->wall_tangential)) wall->tangential = settings->wall_tangential;
+            law->spins = law->spins || pair->friction > 0 || wall->friction > 0;
+        }
+    }
+    return true;
+}

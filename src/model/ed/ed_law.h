@@ -1,0 +1,53 @@
+/* ed_law.h - what a collision does: Walton and Braun's law with the TC rule (cooperative,
+ * eqs. 1 to 7).
+ *
+ * The normal impulse is (1 + r) m12 |v_n|.  The tangential one would make the contact points
+ * rebound with -beta0 of their slip, but at most mu times the normal impulse: beta = min(beta0,
+ * beta1).  With inertia q m R^2 the factor of eq. (6) is q / (1 + q), so 2/7 for spheres and 1/3
+ * for discs.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#ifndef ED_LAW_H
+#define ED_LAW_H
+
+#include "base/arena.h"
+#include "scene/scene.h"
+
+#include <math.h>
+
+struct ed_settings;
+
+/* Contact parameters of two species, or of a species and a wall. */
+struct ed_pair { double restitution, friction, tangential; };
+
+struct ed_law {
+    uint32_t species_count;
+    struct ed_pair *pairs;      /* [a][b] */
+    struct ed_pair *walls;      /* [species][species of the wall] */
+    double *inertia_factor;     /* q by species: I = q m R^2 */
+    double t_c;
+    double exponent, per_speed; /* viscoelastic: 1 - r ~ (v / reference)^exponent; 0: constant */
+    bool   spins;               /* someone has friction */
+};
+
+bool ed_law_create(struct ed_law *law, const struct scene *scene,
+                   const struct ed_settings *settings, struct arena *arena);
+
+/* Coefficient of restitution at normal speed v. */
+static inline double ed_law_restitution(const struct ed_law *law, double r, double v)
+{
+    if (law->exponent == 0) return r;
+    return fmin(fmax(1 - (1 - r) * pow(v * law->per_speed, law->exponent), 0), 1);
+}
+
+/* Tangential impulse on body 1 along t, for a slip of the contact points along t and the normal
+ * impulse.  `mobility` is 1/m_t = (1 + 1/q1)/m1 + (1 + 1/q2)/m2. */
+static inline double ed_law_tangential(const struct ed_pair *pair, double slip, double mobility,
+                                       double normal)
+{
+    const double sticking = (1 + pair->tangential) * fabs(slip) / mobility;
+    return -copysign(fmin(sticking, pair->friction * normal), slip);
+}
+
+#endif

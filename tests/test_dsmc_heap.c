@@ -1,0 +1,220 @@
+/* test_dsmc_heap.c - heaps of cells that can be full, and what plain DSMC makes of them.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Units: d = g = 1.  A heap grows by one grain a time unit (paper 000, 3.4).  `slow` as the first
+ * argument runs the long ones.
+ */
+#include "scenes.h"
+
+#include <omp.h>
+
+enum { COLUMNS = 100 };         /* of two diameters, the cells of hsmc */
+
+static struct scenes_run *begin_heap(uint32_t count, double source, const char *settings)
+{
+    char text[1200];
+    snprintf(text, sizeof text,
+        "until = 1e6; seed = 1; box = [%d.0, 0.0, %d.0, %g]; left = \"open\"; right = \"open\";"
+        "top = \"open\"; gravity = (0.0, -1.0);"
+        "grains = ({ radius = 0.5; density = 1.2732395447351628; restitution = 0.9; });"
+        "sources = ({ position = (0.0, %g); width = 1.0; rate = 1.0; count = %u; });"
+        "dsmc = { %s };", -COLUMNS, COLUMNS, source + 2, source, count, settings);
+    return scenes_begin(text, "dsmc");
+}
+
+/* Grains in each cell; returns the most. */
+static uint32_t load_cells(const struct grains *grains, uint32_t columns[COLUMNS])
+{
+    enum { ROWS = 200 };
+    uint32_t most = 0;
+    uint32_t (*cells)[ROWS] = calloc(COLUMNS, sizeof *cells);
+    memset(columns, 0, COLUMNS * sizeof *columns);
+    for (uint32_t i = 0; i < grains->count; i++) {
+        const int x = (int)floor((grains->x[i] + COLUMNS) / 2), y = (int)floor(grains->y[i] / 2);
+        if (x < 0 || x >= COLUMNS || y < 0 || y >= ROWS) continue;
+        columns[x]++;
+        if (++cells[x][y] > most) most = cells[x][y];
+    }
+    free(cells);
+    return most;
+}
+
+/* Mean slope of both flanks where they are 15 to 85 % of the height; two grains of a column are
+ * one diameter of height. */
+static double slope_of(const uint32_t columns[COLUMNS])
+{
+    uint32_t top = 0;
+    for (uint32_t k = 1; k < COLUMNS; k++) if (columns[k] > columns[top]) top = k;
+    double slope = 0;
+    for (int side = -1; side <= 1; side += 2) {
+        double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+        for (uint32_t k = 0; k < COLUMNS; k++) {
+            const double x = 2.0 * side * ((double)k - top), y = 0.5 * columns[k];
+            const double share = (double)columns[k] / columns[top];
+            if (x <= 0 || share < 0.15 || share > 0.85) continue;
+            n++;
+            sx += x;
+            sy += y;
+            sxx += x * x;
+            sxy += x * y;
+        }
+        CHECK(n > 5);
+        slope -= 0.5 * (n * sxy - sx * sy) / (n * sxx - sx * sx);
+    }
+    return slope;
+}
+
+struct heap_state { double slope, energy, height; uint32_t most; };
+
+static struct heap_state heap_after(struct scenes_run *run, double t)
+{
+    uint32_t columns[COLUMNS];
+    scenes_advance(run, t);
+    const struct counters counters = simulation_count(&run->sim);
+    struct grains grains = scenes_look(run);
+    struct heap_state state = {.energy = counters.kinetic_energy / (double)counters.grains};
+    state.most = load_cells(&grains, columns);
+    state.slope = slope_of(columns);
+    for (uint32_t i = 0; i < grains.count; i++) state.height += grains.y[i] / grains.count;
+    grains_free(&grains);
+    return state;
+}
+
+static void check_heap(uint32_t count, double source, double low, double high, double later)
+{
+    struct scenes_run *run = begin_heap(count, source, "method = \"hsmc\"; reach = 2;");
+    const struct heap_state at_rest = heap_after(run, count + 500.0);
+    print_message("slope %.4f, most in a cell %u\n", at_rest.slope, at_rest.most);
+    CHECK(at_rest.slope > low && at_rest.slope < high);
+    CHECK(at_rest.most == 4);                                   /* full, never more */
+    CHECK(at_rest.energy < 1e-6);
+    const struct heap_state old = heap_after(run, count + later);
+    CHECK(old.most == 4);
+    CHECK_NEAR(old.slope, at_rest.slope, 0.01);                 /* it does not creep */
+    CHECK_NEAR(old.height, at_rest.height, 0.01 * at_rest.height);
+    scenes_end(run);
+}
+
+static void test_a_heap_stands_at_its_slope_and_does_not_creep(void **unused)
+{
+    (void)unused;
+    /* 0.461(6) with 3000 grains by an independent program; with 800 each flank has 14 columns in
+     * the fit, and heights scatter by one row (2 d): 2 / (28 sqrt(14/12)) = 0.066 at most, less as
+     * columns fill evenly. */
+    check_heap(800, 30, 0.40, 0.53, 1000);
+}
+
+static void test_a_large_heap_has_the_known_slope(void **unused)
+{
+    (void)unused;
+    check_heap(3000, 48, 0.43, 0.49, 3000);
+}
+
+static void test_grains_that_roll_less_far_make_a_steeper_heap(void **unused)
+{
+    (void)unused;
+    struct scenes_run *run = begin_heap(800, 44, "method = \"hsmc\"; reach = 1;");
+    /* 0.9 / reach. */
+    CHECK_NEAR(heap_after(run, 1200).slope, 0.9, 0.12);
+    scenes_end(run);
+}
+
+/* Grains fall to the floor of a box 20 wide; the most in a cell of two diameters. */
+static uint32_t crowd_on_the_floor(const char *settings)
+{
+    char text[1000];
+    snprintf(text, sizeof text,
+        "until = 1e6; seed = 1; box = [0.0, 0.0, 20.0, 30.0]; gravity = (0.0, -1.0);"
+        "grains = ({ radius = 0.5; restitution = 0.9; });"
+        "placements = ({ kind = \"square\"; spacing = 1.3; temperature = 1.0; count = 300; });"
+        "dsmc = { %s };", settings);
+    struct scenes_run *run = scenes_begin(text, "dsmc");
+    uint32_t columns[COLUMNS];
+    scenes_advance(run, 600);
+    struct grains grains = scenes_look(run);
+    CHECK(grains.count == 300);
+    const uint32_t most = load_cells(&grains, columns);
+    grains_free(&grains);
+    scenes_end(run);
+    return most;
+}
+
+static void test_plain_dsmc_lets_grains_at_rest_fall_into_each_other(void **unused)
+{
+    (void)unused;
+    /* 300 grains would fill ten columns 7.5 cells high, four a cell.  Points do not mind. */
+    const uint32_t plain = crowd_on_the_floor("method = \"plain\";");
+    const uint32_t full = crowd_on_the_floor("method = \"hsmc\";");
+    print_message("most in a cell: plain %u, hsmc %u\n", plain, full);
+    CHECK(plain > 12);
+    CHECK(full == 4);
+}
+
+static bool is_told(const struct findings *findings, const char *word)
+{
+    for (uint32_t k = 0; k < findings->count && k < FINDINGS_MAX; k++) {
+        if (strstr(findings->list[k].text, word)) return true;
+    }
+    return false;
+}
+
+static void test_what_goes_wrong_is_told_before_the_run(void **unused)
+{
+    (void)unused;
+    struct scenes_run *run = begin_heap(30, 20, "method = \"plain\";");
+    CHECK(is_told(&run->findings, "runs away"));
+    scenes_end(run);
+    run = begin_heap(30, 20, "");
+    CHECK(is_told(&run->findings, "runs away"));
+    scenes_end(run);
+    run = begin_heap(30, 20, "method = \"hsmc\";");
+    CHECK(run->findings.count == 0);
+    scenes_end(run);
+    run = begin_heap(30, 20, "method = \"hsmc\"; cell = 0.5;");
+    CHECK(is_told(&run->findings, "less than a diameter"));
+    scenes_end(run);
+    run = begin_heap(30, 20, "method = \"plain\"; dt = 5.0;");
+    CHECK(is_told(&run->findings, "of a cell in a step"));
+    scenes_end(run);
+}
+
+static void test_sand_runs_out_of_a_funnel(void **unused)
+{
+    (void)unused;
+    struct scenes_run *run = scenes_begin(
+        "until = 1e6; seed = 2; box = [-20.0, 0.0, 20.0, 60.0]; bottom = \"open\";"
+        "gravity = (0.0, -1.0); grains = ({ radius = 0.5; restitution = 0.7; });"
+        "placements = ({ kind = \"square\"; spacing = 1.1; region = [-10.0, 36.0, 10.0, 56.0]; });"
+        "walls = ({ shape = \"polyline\"; points = ((-20.0, 45.0), (-4.0, 20.0)); },"
+        "         { shape = \"polyline\"; points = ((4.0, 20.0), (20.0, 45.0)); });"
+        "dsmc = { method = \"hsmc\"; };", "dsmc");
+    const struct counters before = simulation_count(&run->sim);
+    scenes_advance(run, 200);
+    struct grains grains = scenes_look(run);
+    const struct counters after = simulation_count(&run->sim);
+    /* All but a few that rest on others at the rim; nobody is left outside of the walls. */
+    CHECK(after.grains_out > 0.9 * (double)before.grains);
+    for (uint32_t i = 0; i < grains.count; i++) {
+        const double rim = 4 + (grains.y[i] - 20) * 16 / 25;
+        if (grains.y[i] > 20 && grains.y[i] < 45) CHECK(fabs(grains.x[i]) < rim);
+    }
+    grains_free(&grains);
+    scenes_end(run);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest quick[] = {
+        cmocka_unit_test(test_a_heap_stands_at_its_slope_and_does_not_creep),
+        cmocka_unit_test(test_plain_dsmc_lets_grains_at_rest_fall_into_each_other),
+        cmocka_unit_test(test_what_goes_wrong_is_told_before_the_run),
+        cmocka_unit_test(test_sand_runs_out_of_a_funnel),
+    };
+    const struct CMUnitTest slow[] = {
+        cmocka_unit_test(test_a_large_heap_has_the_known_slope),
+        cmocka_unit_test(test_grains_that_roll_less_far_make_a_steeper_heap),
+    };
+    if (argc > 1 && strcmp(argv[1], "slow") == 0) return cmocka_run_group_tests(slow, NULL, NULL);
+    return cmocka_run_group_tests(quick, NULL, NULL);
+}
