@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/rng.h"
 #include "bench/bench_ed.h"
+#include "bench/bench_lga.h"
 #include "bench/bench_md.h"
 #include "draw/painter.h"
 #include "measure/map.h"
@@ -92,6 +93,20 @@ static bool measure_discs(const struct bench_case *which, struct bench_result *r
     result->wall = clock_wall() - wall;
     result->value = measured.ns;
     result->cpu = 1e-9 * measured.ns * (double)measured.collisions;
+    return true;
+}
+
+/* Nodes of a lattice gas; `scene` names one of bench_lga's cases.  The threads are as they are: the
+ * rate is that of the processor time of all. */
+static bool measure_nodes(const struct bench_case *which, struct bench_result *result,
+                          struct error *error)
+{
+    const struct bench_lga_case *what = bench_lga_list;
+    struct bench_lga_result measured;
+    while (what->name && strcmp(what->name, which->scene) != 0) what++;
+    if (!what->name) return error_set(error, "no lattice gas is called '%s'", which->scene);
+    if (!bench_lga(what, &measured, error)) return false;
+    *result = (struct bench_result){1e-9 * measured.updates, measured.cpu, measured.wall};
     return true;
 }
 
@@ -260,6 +275,14 @@ const struct bench_case bench_list[] = {
     {"lga-hourglass", "the hourglass with 20,000 grains as a lattice gas", "ticks/cpu-s", true,
      measure_model, .scene = "hourglass", .set = "grains.[0].radius=[0.018, 0.027]",
      .model = "lga", .amount = 3},
+    {"lga-fhp2", "FHP-II, 2048 x 2048 nodes, walls, gravity, dissipation", "G nodes/cpu-s", true,
+     measure_nodes, .scene = "fhp2"},
+    {"lga-fhp2-gas", "FHP-II, 2048 x 2048 nodes, nothing else", "G nodes/cpu-s", true,
+     measure_nodes, .scene = "fhp2-gas"},
+    {"lga-sandpile", "sandpile, 2048 x 2048 nodes, walls and gravity", "G nodes/cpu-s", true,
+     measure_nodes, .scene = "sandpile"},
+    {"lga-gmlg", "many rest grains, 1024 x 1024 nodes, walls and gravity", "G nodes/cpu-s", true,
+     measure_nodes, .scene = "gmlg"},
     {"map-1e6", "temperature map of 1,000,000 grains", "cpu-ms", false, measure_map, .amount = 1e6},
     {"png", "encoding a frame of 1280 x 720, level 1", "cpu-ms", false, measure_png,
      .amount = 1},

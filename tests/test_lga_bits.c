@@ -65,7 +65,10 @@ static struct lga *make(const struct trial *trial, bool plain, enum lga_simd sim
     if (!plain) lga_bits_join_walls(lga);
     uint64_t state = 99;
     for (uint32_t n = 0; n < lga->sites; n++) {
-        const unsigned moving = noise(&state) & noise(&state) & 0x3f, rest = noise(&state) & 1;
+        unsigned moving = noise(&state) & noise(&state) & 0x3f;
+        const unsigned rest = (noise(&state) & 3) == 0;
+        /* Grains of a sandpile need room to rest. */
+        if (trial->rule.method == LGA_SANDPILE) moving &= (unsigned)noise(&state);
         if (kind[n] == LGA_FLUID) lga_node_set(lga, n, moving, rest);
     }
     free(kind);
@@ -105,6 +108,12 @@ static const struct lga_rule all = {.method = LGA_FHP2, .gain = 0.9, .loss = 0.5
 static const struct lga_rule certain = {.method = LGA_FHP2, .gain = 0, .gravity = true, .fall = 1,
                                         .smooth = 1};
 
+static const struct lga_rule cold = {.method = LGA_SANDPILE, .gain = 1, .loss = 0.7};
+static const struct lga_rule pipe = {.method = LGA_SANDPILE, .gain = 1, .loss = 0.5,
+    .gravity = true, .fall = 0.5, .strict = true, .smooth = 0.1};
+static const struct lga_rule pile = {.method = LGA_SANDPILE, .gain = 1, .loss = 1,
+    .gravity = true, .fall = 0.5, .fly = true};
+
 static void test_bits_and_bytes_make_the_same_lattice(void **unused)
 {
     (void)unused;
@@ -114,7 +123,9 @@ static void test_bits_and_bytes_make_the_same_lattice(void **unused)
         {8, 10, TORUS, lossy}, {2, 2, TORUS, all}, {1024, 4, PIPE, all}, {63, 20, PIPE, heavy},
         {64, 20, PIPE, lossy}, {65, 20, BOX, all}, {700, 10, BOX, certain}, {100, 30, OBSTACLES, all},
         {512, 12, OBSTACLES, lossy}, {40, 30, SINKS, all}, {512, 10, SINKS, heavy},
-        {120, 30, OBSTACLES, certain},
+        {120, 30, OBSTACLES, certain}, {100, 20, TORUS, cold}, {13, 60, PIPE, pipe},
+        {600, 12, BOX, pile}, {512, 12, TORUS, pile}, {90, 40, SINKS, pile}, {90, 40, SINKS, cold},
+        {90, 40, OBSTACLES, pile}, {700, 6, OBSTACLES, pipe},
     };
     for (size_t k = 0; k < sizeof trials / sizeof *trials; k++) {
         struct lga *plain = make(&trials[k], true, LGA_SIMD_AVX512);
@@ -134,15 +145,13 @@ static void test_bits_and_bytes_make_the_same_lattice(void **unused)
     }
 }
 
-static void test_every_set_of_instructions_and_number_of_threads_gives_the_same_bytes(void **unused)
+static void check_machines(const struct trial *trial)
 {
-    (void)unused;
-    const struct trial trial = {600, 40, OBSTACLES, all};
     struct lga *reference = NULL;
     for (int simd = 0; simd < LGA_SIMD_LEVELS; simd++) {
         for (int threads = 1; threads <= 3; threads++) {
             omp_set_num_threads(threads);
-            struct lga *lga = make(&trial, false, (enum lga_simd)simd);
+            struct lga *lga = make(trial, false, (enum lga_simd)simd);
             for (int t = 0; t < 50; t++) lga_step(lga);
             if (!reference) {
                 reference = lga;
@@ -158,11 +167,16 @@ static void test_every_set_of_instructions_and_number_of_threads_gives_the_same_
     omp_set_num_threads(1);
 }
 
-static void test_a_grain_held_by_a_wall_waits(void **unused)
+static void test_every_set_of_instructions_and_number_of_threads_gives_the_same_bytes(void **unused)
 {
     (void)unused;
-    const struct trial trial = {100, 10, OBSTACLES, lossy};
-    struct lga *lga[2] = {make(&trial, true, LGA_SIMD_AVX512), make(&trial, false, LGA_SIMD_AVX512)};
+    check_machines(&(struct trial){600, 40, OBSTACLES, all});
+    check_machines(&(struct trial){600, 40, OBSTACLES, pile});
+}
+
+static void check_held(const struct trial *trial)
+{
+    struct lga *lga[2] = {make(trial, true, LGA_SIMD_AVX512), make(trial, false, LGA_SIMD_AVX512)};
     for (int k = 0; k < 2; k++) {
         for (uint32_t n = 0; n < lga[k]->sites; n++) {
             if (lga_node_get(lga[k], n).kind == LGA_WALL) lga_node_set(lga[k], n, 0x2d, 1);
@@ -181,6 +195,13 @@ static void test_a_grain_held_by_a_wall_waits(void **unused)
     unmake(lga[1]);
 }
 
+static void test_a_grain_held_by_a_wall_waits(void **unused)
+{
+    (void)unused;
+    check_held(&(struct trial){100, 10, OBSTACLES, lossy});
+    check_held(&(struct trial){100, 10, OBSTACLES, pile});
+}
+
 static void test_dice_fall_as_often_as_they_should(void **unused)
 {
     (void)unused;
@@ -197,7 +218,8 @@ static void test_dice_fall_as_often_as_they_should(void **unused)
         out[LGA_DIE_LOSS] = bits;
         double sum = 0;
         for (uint32_t row = 0; row < ROWS; row++) {
-            lga_dice_roll(&dice, lga_dice_simd(), 1, 2, row, WORDS, out);
+            const struct lga_dice_source source = {1, 2, row, 0};
+            lga_dice_roll(&dice, lga_dice_simd(), lga_dice_key(source), WORDS, out);
             for (int w = 0; w < WORDS; w++) sum += __builtin_popcountll(bits[w]);
         }
         const double n = 64.0 * ROWS * WORDS, least = fmin(p, 1 - p);

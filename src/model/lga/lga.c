@@ -131,9 +131,15 @@ static double sites_about(const struct scene *scene, double spacing)
     return (width / spacing + 5) * (height / spacing + 5) * 2 / sqrt(3);
 }
 
+static bool is_fast(const struct lga_settings *s)
+{
+    const bool heap = s->heap && s->method == LGA_SANDPILE;
+    return lga_step_is_fast(&(struct lga_rule){.method = (enum lga_method)s->method, .heap = heap});
+}
+
 static double sites_max(const struct lga_settings *s)
 {
-    return s->method == LGA_FHP2 ? sites_max_fast : sites_max_plain;
+    return is_fast(s) ? sites_max_fast : sites_max_plain;
 }
 
 /* Fills in spacing and tick, the same ones for all phases.  k and pw stay open: they follow from
@@ -177,9 +183,9 @@ static void lga_resolve(struct scene *scene, struct findings *findings)
 static uint64_t lga_memory(const struct scene *scene)
 {
     const struct lga_settings s = completed(scene);
-    const double plain = LGA_DIRECTIONS * sizeof(uint32_t) + 8, fast = (LGA_PLANES + 2) / 8.0;
+    const double plain = LGA_DIRECTIONS * sizeof(uint32_t) + 8, fast = (LGA_PLANES + 4) / 8.0;
     const double sites = fmin(sites_about(scene, s.spacing), 1e15);
-    return (uint64_t)(sites * (s.method == LGA_FHP2 ? fast : plain));
+    return (uint64_t)(sites * (is_fast(&s) ? fast : plain));
 }
 
 /* --- life --- */

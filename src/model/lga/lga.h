@@ -170,15 +170,25 @@ void lga_node_set_kinds(struct lga *lga, double t);
 /* The fluid node nearest to a point and on the same side of every wall; LGA_NONE. */
 uint32_t lga_node_home(const struct lga *lga, double t, double x, double y);
 
+/* lga_walk.c: `surplus` grains, not on the lattice now, go from a node to others that have no rest
+ * grain; at last resort they take a free slot of the node.  `heap`: they become part of it. */
+void lga_walk(struct lga *lga, uint32_t site, uint32_t surplus, bool heap);
+
 /* lga_dice.c */
 struct lga_die lga_dice_die(double probability);
 struct lga_dice lga_dice_of(const struct lga_rule *rule);
 uint32_t lga_dice_words(uint32_t columns);
 
-/* The bits of one row: `out` has a row of `words` for each die whose outcome is open.  Works on any
- * machine whose instructions include those of `simd`. */
-void lga_dice_roll(const struct lga_dice *dice, enum lga_simd simd, uint64_t seed, uint64_t tick,
-                   uint32_t row, uint32_t words, uint64_t *const out[LGA_DICE]);
+/* Where a row's random words come from: those of a sandpile in two stages, before and after the
+ * walks of its surplus grains. */
+struct lga_dice_source { uint64_t seed, tick; uint32_t row, stage; };
+uint64_t lga_dice_key(struct lga_dice_source source);
+uint32_t lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind);
+
+/* The bits of one row: `out` has a row of `words` for each die that is rolled; those whose outcome
+ * is certain are not.  Works on any machine whose instructions include those of `simd`. */
+void lga_dice_roll(const struct lga_dice *dice, enum lga_simd simd, uint64_t key, uint32_t words,
+                   uint64_t *const out[LGA_DICE]);
 enum lga_simd lga_dice_simd(void);      /* the best of this machine */
 
 /* lga_lattice.c: geometry. */
@@ -205,6 +215,7 @@ void lga_fill_release_trapped(struct lga *lga);
 
 /* lga_step.c: one tick by any rules, and the streaming that they share.  Allocation takes an empty
  * `lga` whose lattice, rule and sites are set. */
+bool lga_step_is_fast(const struct lga_rule *rule);     /* is there a fast form? */
 bool lga_step_allocate(struct lga *lga);
 void lga_step(struct lga *lga);
 double lga_step_time(const struct lga *lga);
@@ -218,6 +229,9 @@ void lga_gmlg_collide(struct lga *lga);
 bool lga_sand_allocate(struct lga *lga);
 void lga_sand_collide(struct lga *lga);
 void lga_sand_settle(struct lga *lga);  /* and after it: contacts with the heap */
+
+/* Which of the movers bends down, *from, and where to; `left` is the outcome of the die. */
+int lga_sand_bend(const struct lga *lga, uint32_t site, unsigned moving, bool left, int *from);
 bool lga_sand_die(const struct lga *lga, enum lga_die_kind kind, uint32_t site);
 
 #endif

@@ -39,10 +39,10 @@ static const struct lga_kernel *const kernels[] = {&kernel_base, &kernel_base, &
 static const int row_step[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
 static const int column_step[2][LGA_DIRECTIONS] = {{1, 0, -1, -1, -1, 0}, {1, 1, 0, -1, 0, 1}};
 
-void lga_dice_roll(const struct lga_dice *dice, enum lga_simd simd, uint64_t seed, uint64_t tick,
-                   uint32_t row, uint32_t words, uint64_t *const out[LGA_DICE])
+void lga_dice_roll(const struct lga_dice *dice, enum lga_simd simd, uint64_t key, uint32_t words,
+                   uint64_t *const out[LGA_DICE])
 {
-    kernels[simd]->roll(dice, rng_keyed(seed, tick, row, 0), words, out);
+    kernels[simd]->roll(dice, key, words, out);
 }
 
 static uint32_t row_at(const struct lga *lga, uint32_t row, int step)
@@ -91,6 +91,15 @@ static void join_ends(uint64_t *row, uint32_t words, uint32_t columns)
     if (full) row[words] |= row[0] << 63;
 }
 
+uint64_t *lga_bits_row(const struct lga *lga, uint32_t row) { return plane(lga->bits, row, 0); }
+
+uint64_t *lga_bits_wall(const struct lga *lga, uint32_t row) { return wall_row(lga->bits, row); }
+
+void lga_bits_join(const struct lga *lga, uint64_t *row)
+{
+    join_ends(row, lga->bits->words, lga->lattice.columns);
+}
+
 bool lga_bits_allocate(struct lga *lga)
 {
     struct arena *arena = &lga->arena;
@@ -100,12 +109,14 @@ bool lga_bits_allocate(struct lga *lga)
     bits->words = lga->words;
     bits->stride = bits->words + 2 * LGA_LANES;
     bits->bands = rows / 2 < threads ? rows / 2 : threads;
+    const bool sandpile = lga->rule.method == LGA_SANDPILE;
     const size_t ring = (size_t)LGA_RING * LGA_RING_PLANES * bits->stride;
     return arena_array(arena, &bits->planes, (size_t)rows * LGA_PLANES * bits->words)
         && arena_array(arena, &bits->wall, (size_t)rows * bits->stride)
         && arena_array(arena, &bits->sink, lga->sinks ? (size_t)rows * bits->words : 0)
         && arena_array(arena, &bits->kinds, (size_t)bits->bands * lga->lattice.columns)
-        && arena_array(arena, &bits->rings, bits->bands * ring);
+        && arena_array(arena, &bits->rings, bits->bands * ring)
+        && (!sandpile || lga_bits_sand_allocate(lga));
 }
 
 /* --- one tick --- */
@@ -130,16 +141,27 @@ static uint64_t collide(const struct lga *lga, uint32_t y, uint64_t *out, unsign
     const uint64_t *below = wall_row(bits, row_at(lga, y, -1));
     const struct lga_row_collide row = {
         .words = bits->words, .stride = bits->stride, .effects = effects,
-        .key = rng_keyed(lga->seed, lga->ticks, y, 0), .dice = &lga->dice, .in = plane(bits, y, 0),
+        .key = lga_dice_key((struct lga_dice_source){lga->seed, lga->ticks, y, 0}), .dice = &lga->dice, .in = plane(bits, y, 0),
         .out = out, .wall = wall_row(bits, y), .wall_left = below + column_step[y & 1][4],
         .wall_right = below + column_step[y & 1][5]
     };
     const bool rare = effects & (LGA_BITS_HELD | LGA_BITS_MIRROR);
     const unsigned index = effects & (LGA_BITS_LOSS | LGA_BITS_GRAVITY);
-    const uint64_t collisions = rare ? kernel->collide_any(&row) : kernel->collide[index](&row);
-    for (uint32_t d = 0; d < LGA_DIRECTIONS; d++) {
-        join_ends(out + d * bits->stride, bits->words, lga->lattice.columns);
+    return rare ? kernel->collide_any(&row) : kernel->collide[index](&row);
+}
+
+/* Row y as it is before streaming: row k of the band's ring. */
+static uint64_t prepare(const struct lga *lga, uint32_t y, uint32_t band, uint32_t k,
+                        unsigned effects)
+{
+    uint64_t *out = ring_row(lga->bits, band, k), collisions = 0;
+    if (lga->rule.method == LGA_SANDPILE) {
+        uint64_t *scratch = ring_row(lga->bits, band, LGA_RING - 1);
+        lga_bits_sand_fall(lga, kernels[lga->simd], y, out, scratch);
+    } else {
+        collisions = collide(lga, y, out, effects);
     }
+    for (uint32_t d = 0; d < LGA_DIRECTIONS; d++) lga_bits_join(lga, out + d * lga->bits->stride);
     return collisions;
 }
 
@@ -221,7 +243,7 @@ static struct passed pass_band(const struct lga *lga, uint32_t band, unsigned ef
         else if (y + 2 == y1) ring[2] = ring_row(bits, band, 1);
         else {
             ring[2] = ring_row(bits, band, 2 + y % 3);
-            sum.collisions += collide(lga, y + 1, ring[2], effects);
+            sum.collisions += prepare(lga, y + 1, band, 2 + y % 3, effects);
         }
         sum.left += stream(lga, y, ring, effects);
         ring[0] = ring[1];
@@ -235,11 +257,14 @@ void lga_bits_step(struct lga *lga)
     const struct lga_bits *bits = lga->bits;
     const unsigned effects = effects_of(lga);
     uint64_t collisions = 0, left = 0;
+    if (lga->rule.method == LGA_SANDPILE) {
+        collisions += lga_bits_sand_stop(lga, kernels[lga->simd]);
+    }
     #pragma omp parallel for schedule(static, 1) reduction(+ : collisions)
     for (uint32_t band = 0; band < bits->bands; band++) {
         const uint32_t y0 = band_start(lga, band), y1 = band_start(lga, band + 1);
-        collisions += collide(lga, y0, ring_row(bits, band, 0), effects);
-        collisions += collide(lga, y1 - 1, ring_row(bits, band, 1), effects);
+        collisions += prepare(lga, y0, band, 0, effects);
+        collisions += prepare(lga, y1 - 1, band, 1, effects);
     }
     #pragma omp parallel for schedule(static, 1) reduction(+ : collisions, left)
     for (uint32_t band = 0; band < bits->bands; band++) {

@@ -13,7 +13,7 @@
 
 #include "model/lga/lga.h"
 
-enum { LGA_PLANES = 7, LGA_RING = 5, LGA_RING_PLANES = LGA_PLANES + 1 };
+enum { LGA_PLANES = 7, LGA_RING = 6, LGA_RING_PLANES = LGA_PLANES + 1 };
 
 enum {
     LGA_BITS_LOSS = 1, LGA_BITS_GRAVITY = 2, LGA_BITS_WALLS = 4, LGA_BITS_SINKS = 8,
@@ -29,6 +29,8 @@ struct lga_bits {
     uint64_t *sink;             /* [row][word]; NULL: none */
     uint8_t  *kinds;            /* a row of them for each band, while walls are drawn */
     uint64_t *rings;            /* rows after their collisions: [band][LGA_RING][plane][word] */
+    uint64_t *surplus;          /* sandpile: more than one rest grain after a collision, in two bits:
+                                 * [row][low, high][word] */
     unsigned effects;
 };
 
@@ -52,6 +54,28 @@ struct lga_row_stream {
     const uint64_t *wall, *sink;
 };
 
+/* The two stages of the sandpile. */
+struct lga_row_stop {
+    uint32_t words;
+    bool held;                  /* grains caught by a wall wait inside it */
+    const uint64_t *wall;
+    uint64_t key;
+    const struct lga_dice *dice;
+    uint64_t *planes, *low, *high;
+};
+
+struct lga_row_fall {
+    uint32_t words, stride;
+    bool held;
+    const uint64_t *wall;
+    uint64_t key;
+    const struct lga_dice *dice;
+    const uint64_t *in;
+    uint64_t *out;
+    uint64_t *bend, *bend_side; /* which nodes' movers shall be bent, and to which side */
+    const uint64_t *wall_left, *wall_right, *taken_left, *taken_right;
+};
+
 /* One set of instructions; the index is LGA_BITS_LOSS | LGA_BITS_GRAVITY, or walls yes or no. */
 struct lga_kernel {
     void (*roll)(const struct lga_dice *dice, uint64_t key, uint32_t words,
@@ -60,7 +84,15 @@ struct lga_kernel {
     uint64_t (*collide_any)(const struct lga_row_collide *row);
     uint64_t (*stream[2])(const struct lga_row_stream *row);
     uint64_t (*stream_any)(const struct lga_row_stream *row);
+    uint64_t (*stop)(const struct lga_row_stop *row);
+    void (*fall)(const struct lga_row_fall *row);
 };
+
+/* lga_bits_sand.c: the sandpile before its rows are streamed. */
+bool lga_bits_sand_allocate(struct lga *lga);
+uint64_t lga_bits_sand_stop(struct lga *lga, const struct lga_kernel *kernel);
+void lga_bits_sand_fall(const struct lga *lga, const struct lga_kernel *kernel, uint32_t row,
+                        uint64_t *out, uint64_t *scratch);
 
 bool lga_bits_allocate(struct lga *lga);
 void lga_bits_step(struct lga *lga);
@@ -71,6 +103,9 @@ void lga_bits_join_walls(struct lga *lga);
 void lga_bits_rasterise(struct lga *lga, double t);     /* all that from the scene */
 
 struct lga_node lga_bits_node(const struct lga *lga, uint32_t site);
+uint64_t *lga_bits_row(const struct lga *lga, uint32_t row);    /* its first plane */
+uint64_t *lga_bits_wall(const struct lga *lga, uint32_t row);   /* with margins */
+void lga_bits_join(const struct lga *lga, uint64_t *row);       /* fills the margins of a row */
 void lga_bits_set(struct lga *lga, uint32_t site, unsigned moving, unsigned rest);
 
 /* How many grains each plane of a row holds. */

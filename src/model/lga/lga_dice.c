@@ -9,6 +9,8 @@
  */
 #include "model/lga/lga.h"
 
+#include "base/rng.h"
+
 #include <assert.h>
 #include <math.h>
 
@@ -53,6 +55,16 @@ struct lga_dice lga_dice_of(const struct lga_rule *rule)
 uint32_t lga_dice_words(uint32_t columns)
 {
     return (columns + 64 * LGA_LANES - 1) / (64 * LGA_LANES) * LGA_LANES;
+}
+
+uint64_t lga_dice_key(struct lga_dice_source source)
+{
+    return rng_keyed(source.seed, source.tick, source.row, source.stage);
+}
+
+uint32_t lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind)
+{
+    return rule->method == LGA_SANDPILE && kind >= LGA_DIE_FALL;
 }
 
 enum lga_simd lga_dice_simd(void)

@@ -13,8 +13,7 @@
 
 #include <assert.h>
 
-enum { HOPS_MAX = 1 << 14 };            /* of a walk; then the grain flies on from where it is */
-enum { DRAW_MOVER = 1 << 16, DRAW_WALK };
+enum { DRAW_MOVER = 64 };
 
 static unsigned bit(int direction) { return 1u << direction; }
 
@@ -31,11 +30,15 @@ static void roll(struct lga *lga)
     const uint32_t rows = lga->lattice.rows;
     #pragma omp parallel for if (lga->sites >= LGA_LOOP_MIN)
     for (uint32_t row = 0; row < rows; row++) {
-        uint64_t *out[LGA_DICE];
-        for (int k = 0; k < LGA_DICE; k++) {
-            out[k] = lga->rolled[k] ? lga->rolled[k] + (size_t)row * lga->words : NULL;
+        for (uint32_t stage = 0; stage < 2; stage++) {
+            uint64_t *out[LGA_DICE] = {NULL};
+            for (uint32_t k = 0; k < LGA_DICE; k++) {
+                if (!lga->rolled[k] || lga_dice_stage(&lga->rule, k) != stage) continue;
+                out[k] = lga->rolled[k] + (size_t)row * lga->words;
+            }
+            const struct lga_dice_source source = {lga->seed, lga->ticks, row, stage};
+            lga_dice_roll(&lga->dice, lga->simd, lga_dice_key(source), lga->words, out);
         }
-        lga_dice_roll(&lga->dice, lga->simd, lga->seed, lga->ticks, row, lga->words, out);
     }
 }
 
@@ -55,35 +58,24 @@ static bool collide(struct lga *lga, uint32_t site)
     return true;
 }
 
-/* One rest grain leaves its node and walks until it finds a node without.  If it finds none it
- * takes off again: a collision has just left slots free. */
-static void walk(struct lga *lga, uint32_t start, uint64_t *draws, bool heap)
-{
-    uint32_t site = start;
-    lga->rest[start]--;
-    for (uint32_t hop = 0; hop < HOPS_MAX; hop++) {
-        const uint64_t word = rng_keyed(lga->seed, lga->ticks, start, DRAW_WALK + (*draws)++);
-        const uint32_t to = lga->beside[site][(int)(rng_unit(word) * LGA_DIRECTIONS)];
-        if (lga->kind[to] == LGA_WALL) continue;
-        site = to;
-        if (lga->kind[site] == LGA_SINK) {
-            lga->grains_out++;
-            return;
-        }
-        if (lga->rest[site] > 0) continue;
-        lga->rest[site] = 1;
-        if (heap) lga->heap[site] = true;
-        return;
-    }
-    const unsigned taken = lga->moving[start];
-    if (taken + 1 < LGA_STATES) lga->moving[start] = (uint8_t)(taken | (taken + 1));
-    else lga->rest[start]++;
-}
-
 static void spread(struct lga *lga, uint32_t site, bool heap)
 {
-    uint64_t draws = heap ? 1u << 20 : 0;
-    for (int surplus = lga->rest[site] - 1; surplus > 0; surplus--) walk(lga, site, &draws, heap);
+    if (lga->rest[site] <= 1) return;
+    const uint32_t surplus = lga->rest[site] - 1u;
+    lga->rest[site] = 1;
+    lga_walk(lga, site, surplus, heap);
+}
+
+/* In the order of the fast form: word by word, bit by bit. */
+static void spread_row(struct lga *lga, uint32_t row)
+{
+    const uint32_t columns = lga->lattice.columns;
+    for (uint32_t w = 0; w < lga->words; w++) {
+        for (uint32_t x = w; x < columns; x += lga->words) {
+            const uint32_t n = row * columns + x;
+            if (lga->kind[n] == LGA_FLUID) spread(lga, n, false);
+        }
+    }
 }
 
 static int downward(const struct lga *lga, enum lga_die_kind kind, uint32_t site)
@@ -122,16 +114,23 @@ static void fall_sand(struct lga *lga, uint32_t site)
     if (lga->heap) lga->heap[site] = false;
 }
 
-/* Sandpile: one of the movers bends down. */
-static void bend_sand(struct lga *lga, uint32_t site)
+int lga_sand_bend(const struct lga *lga, uint32_t site, unsigned moving, bool left, int *from)
 {
     static const int down[LGA_DIRECTIONS] = {5, 5, 4, 4, -1, -1};
+    const double u = rng_unit(rng_keyed(lga->seed, lga->ticks, site, DRAW_MOVER));
+    int before = (int)(u * __builtin_popcount(moving));
+    for (*from = 0; !(moving & bit(*from)) || before-- > 0; (*from)++) continue;
+    return down[*from] < 0 ? (left ? 4 : 5) : down[*from];
+}
+
+/* Sandpile: one of the movers bends down, unless a rest grain is in the way. */
+static void bend_sand(struct lga *lga, uint32_t site)
+{
     const unsigned moving = lga->moving[site];
     if (moving == 0 || !lga_sand_die(lga, LGA_DIE_BEND, site)) return;
-    const double u = rng_unit(rng_keyed(lga->seed, lga->ticks, site, DRAW_MOVER));
-    int left = (int)(u * __builtin_popcount(moving)), from = 0;
-    while (!(moving & bit(from)) || left-- > 0) from++;
-    const int to = down[from] < 0 ? downward(lga, LGA_DIE_BEND_SIDE, site) : down[from];
+    int from;
+    const bool left = lga_sand_die(lga, LGA_DIE_BEND_SIDE, site);
+    const int to = lga_sand_bend(lga, site, moving, left, &from);
     const uint32_t below = lga->beside[site][to];
     if (moving & bit(to) || (lga->kind[below] == LGA_FLUID && lga->load[below] & LOAD_RESTS)) return;
     lga->moving[site] = (uint8_t)((moving & ~bit(from)) | bit(to));
@@ -158,9 +157,7 @@ void lga_sand_collide(struct lga *lga)
     for (uint32_t n = 0; n < sites; n++) {
         if (lga->kind[n] == LGA_FLUID && lga->moving[n]) collisions += collide(lga, n);
     }
-    for (uint32_t n = 0; n < sites && sandpile; n++) {
-        if (lga->rest[n] > 1 && lga->kind[n] == LGA_FLUID) spread(lga, n, false);
-    }
+    for (uint32_t row = 0; row < lga->lattice.rows && sandpile; row++) spread_row(lga, row);
     #pragma omp parallel for if (sites >= LGA_LOOP_MIN)
     for (uint32_t n = 0; n < sites; n++) {
         lga->load[n] = (uint8_t)((lga->rest[n] ? LOAD_RESTS : 0)

@@ -157,6 +157,11 @@ static bool allocate_plain(struct lga *lga)
     return gmlg || lga_sand_allocate(lga);
 }
 
+bool lga_step_is_fast(const struct lga_rule *rule)
+{
+    return rule->method == LGA_FHP2 || (rule->method == LGA_SANDPILE && !rule->heap);
+}
+
 bool lga_step_allocate(struct lga *lga)
 {
     struct arena *arena = &lga->arena;
@@ -167,6 +172,5 @@ bool lga_step_allocate(struct lga *lga)
     if (!arena_array(arena, &lga->table, 1) || !arena_array(arena, &lga->queue, lga->queue_length)
         || !arena_array(arena, &lga->seen, lga->sites / 64 + 1)) return false;
     lga_table_fill(lga->table);
-    const bool fast = lga->rule.method == LGA_FHP2 && !lga->plain;
-    return fast ? lga_bits_allocate(lga) : allocate_plain(lga);
+    return lga_step_is_fast(&lga->rule) && !lga->plain ? lga_bits_allocate(lga) : allocate_plain(lga);
 }
