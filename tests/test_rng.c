@@ -57,7 +57,7 @@ static void check_words(uint64_t (*word)(uint64_t k), const char *name)
     for (uint64_t k = 0; k < WORDS; k++) {
         const uint64_t a = word(2 * k), b = word(2 * k + 1);
         cells[(a >> 61) * 8 + (b >> 61)]++;
-        for (int bit = 0; bit < 64; bit++) ones[bit] += a >> bit & 1;
+        for (int bit = 0; bit < 64; bit++) ones[bit] += (uint32_t)(a >> bit & 1);
     }
     double chi2 = 0;
     for (int c = 0; c < BINS; c++) {
