@@ -219,7 +219,7 @@ static void test_dice_fall_as_often_as_they_should(void **unused)
         double sum = 0;
         for (uint32_t row = 0; row < ROWS; row++) {
             const struct lga_dice_source source = {1, 2, row, 0};
-            lga_dice_roll(&dice, lga_dice_simd(), lga_dice_key(source), WORDS, out);
+            lga_bits_roll(&dice, lga_dice_simd(), lga_dice_key(source), WORDS, out);
             for (int w = 0; w < WORDS; w++) sum += __builtin_popcountll(bits[w]);
         }
         const double n = 64.0 * ROWS * WORDS, least = fmin(p, 1 - p);

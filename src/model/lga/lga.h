@@ -185,11 +185,12 @@ struct lga_dice_source { uint64_t seed, tick; uint32_t row, stage; };
 uint64_t lga_dice_key(struct lga_dice_source source);
 uint32_t lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind);
 
-/* The bits of one row: `out` has a row of `words` for each die that is rolled; those whose outcome
- * is certain are not.  Works on any machine whose instructions include those of `simd`. */
-void lga_dice_roll(const struct lga_dice *dice, enum lga_simd simd, uint64_t key, uint32_t words,
-                   uint64_t *const out[LGA_DICE]);
 enum lga_simd lga_dice_simd(void);      /* the best of this machine */
+
+/* lga_bits.c: the bits of one row: `out` has a row of `words` for each die that is rolled; those whose outcome
+ * is certain are not.  Works on any machine whose instructions include those of `simd`. */
+void lga_bits_roll(const struct lga_dice *dice, enum lga_simd simd, uint64_t key, uint32_t words,
+                   uint64_t *const out[LGA_DICE]);
 
 /* lga_lattice.c: geometry. */
 struct lga_lattice lga_lattice_of(const struct scene *scene, double spacing, bool turned);

@@ -39,7 +39,7 @@ static const struct lga_kernel *const kernels[] = {&kernel_base, &kernel_base, &
 static const int row_step[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
 static const int column_step[2][LGA_DIRECTIONS] = {{1, 0, -1, -1, -1, 0}, {1, 1, 0, -1, 0, 1}};
 
-void lga_dice_roll(const struct lga_dice *dice, enum lga_simd simd, uint64_t key, uint32_t words,
+void lga_bits_roll(const struct lga_dice *dice, enum lga_simd simd, uint64_t key, uint32_t words,
                    uint64_t *const out[LGA_DICE])
 {
     kernels[simd]->roll(dice, key, words, out);

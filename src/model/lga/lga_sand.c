@@ -37,7 +37,7 @@ static void roll(struct lga *lga)
                 out[k] = lga->rolled[k] + (size_t)row * lga->words;
             }
             const struct lga_dice_source source = {lga->seed, lga->ticks, row, stage};
-            lga_dice_roll(&lga->dice, lga->simd, lga_dice_key(source), lga->words, out);
+            lga_bits_roll(&lga->dice, lga->simd, lga_dice_key(source), lga->words, out);
         }
     }
 }
