@@ -141,7 +141,8 @@ static uint64_t collide(const struct lga *lga, uint32_t y, uint64_t *out, unsign
     const uint64_t *below = wall_row(bits, row_at(lga, y, -1));
     const struct lga_row_collide row = {
         .words = bits->words, .stride = bits->stride, .effects = effects,
-        .key = lga_dice_key((struct lga_dice_source){lga->seed, lga->ticks, y, 0}), .dice = &lga->dice, .in = plane(bits, y, 0),
+        .key = lga_dice_key((struct lga_dice_source){lga->seed, lga->ticks, y, 0}),
+        .dice = &lga->dice, .in = plane(bits, y, 0),
         .out = out, .wall = wall_row(bits, y), .wall_left = below + column_step[y & 1][4],
         .wall_right = below + column_step[y & 1][5]
     };
@@ -235,7 +236,8 @@ static struct passed pass_band(const struct lga *lga, uint32_t band, unsigned ef
 {
     const struct lga_bits *bits = lga->bits;
     const uint32_t y0 = band_start(lga, band), y1 = band_start(lga, band + 1);
-    const uint32_t before = (band + bits->bands - 1) % bits->bands, after = (band + 1) % bits->bands;
+    const uint32_t before = (band + bits->bands - 1) % bits->bands;
+    const uint32_t after = (band + 1) % bits->bands;
     uint64_t *ring[3] = {ring_row(bits, before, 1), ring_row(bits, band, 0), NULL};
     struct passed sum = {0};
     for (uint32_t y = y0; y < y1; y++) {
