@@ -184,9 +184,9 @@ static double upper_slope(const struct lga *lga)
 static void test_a_poured_heap_is_almost_as_steep_as_the_lattice(void **unused)
 {
     (void)unused;
-    /* 56.5 +- 0.1 degrees for the upper slope; which part is upper is not told, and moving its lower
-     * end between 20 and 40 % of the height changes ours by one degree.  The height of a column is
-     * whole rows: over 20 columns that makes a seed scatter by 0.7 degrees. */
+    /* 56.5 +- 0.1 degrees for the upper slope; which part is upper is not told, and moving its
+     * lower end between 20 and 40 % of the height changes ours by one degree.  The height of a
+     * column is whole rows: over 20 columns that makes a seed scatter by 0.7 degrees. */
     double mean = 0;
     for (uint64_t seed = 1; seed <= 2; seed++) {
         struct lga *lga = heap_poured(seed);

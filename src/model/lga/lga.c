@@ -45,8 +45,8 @@ static const struct key keys[] = {
     {"gain", KEY_REAL, ROW(gain), "1", 0, 1, "1", NULL,
      "chance that an elastic collision with a rest grain sets it in motion"},
     {"orientation", KEY_CHOICE, ROW(orientation), "V", NAN, NAN, NULL, "V|H",
-     "gmlg: V, a link points down (heaps of 30 degrees); H, links lie level (60 degrees); the other "
-     "methods are always H"},
+     "gmlg: V, a link points down (heaps of 30 degrees); H, links lie level (60 degrees); the "
+     "other methods are always H"},
     {"p", KEY_REAL, ROW(p), "nan", 0, 1, "1", NULL,
      "fhp2, sandpile: share of collisions that lose energy; when absent 1 - restitution^2"},
     {"b", KEY_REAL, ROW(b), "1", 0, 1, "1", NULL,
@@ -353,7 +353,8 @@ static void lga_observe(const void *state, struct grains *out)
 }
 
 /* All grains of a row of nodes are alike high, or (turned) they are asked one by one. */
-static void count_row(const struct lga *lga, uint32_t row, uint64_t sum[LGA_PLANES], double *potential)
+static void count_row(const struct lga *lga, uint32_t row, uint64_t sum[LGA_PLANES],
+                      double *potential)
 {
     const struct lga_lattice *lattice = &lga->lattice;
     const double *gravity = lga->scene->gravity;

@@ -65,7 +65,7 @@ struct lga_rule {
     double smooth;              /* 1 - b: chance that a wall reflects like a mirror */
     bool   fly;                 /* sandpile: gravity bends the way of movers too */
     bool   strict;              /* sandpile: no grain at rest starts towards a mover */
-    bool   heap;                /* sandpile: grains that stop on the plate make a heap that catches */
+    bool   heap;                /* sandpile: what stops on the plate makes a heap that catches */
 };
 
 /* Random bits, one a node and tick for each of these (lga_dice.c); listed in the order in which
@@ -126,7 +126,7 @@ struct lga {
     double   fill;              /* share of the slots with movers at the start */
     bool     plain;             /* no fast form, though there is one: for comparison */
     bool     sinks;             /* some node may be a sink */
-    uint32_t words;             /* of 64 nodes in a row: column x is bit x / words of word x % words */
+    uint32_t words;             /* of 64 nodes in a row: column x is bit x / words of x % words */
     uint64_t *rolled[LGA_DICE]; /* plain form: the bits of this tick, [row][word] */
     uint32_t sites;
     uint8_t *kind;              /* enum lga_kind; derived from scene and time */
@@ -185,11 +185,12 @@ struct lga_dice_source { uint64_t seed, tick; uint32_t row, stage; };
 uint64_t lga_dice_key(struct lga_dice_source source);
 uint32_t lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind);
 
-/* The bits of one row: `out` has a row of `words` for each die that is rolled; those whose outcome
- * is certain are not.  Works on any machine whose instructions include those of `simd`. */
-void lga_dice_roll(const struct lga_dice *dice, enum lga_simd simd, uint64_t key, uint32_t words,
-                   uint64_t *const out[LGA_DICE]);
 enum lga_simd lga_dice_simd(void);      /* the best of this machine */
+
+/* lga_bits.c: the bits of one row.  `out` has a row of `words` for each die that is rolled; those
+ * whose outcome is certain are not.  The machine must have the instructions of `simd`. */
+void lga_bits_roll(const struct lga_dice *dice, enum lga_simd simd, uint64_t key, uint32_t words,
+                   uint64_t *const out[LGA_DICE]);
 
 /* lga_lattice.c: geometry. */
 struct lga_lattice lga_lattice_of(const struct scene *scene, double spacing, bool turned);

@@ -39,7 +39,7 @@ static const struct lga_kernel *const kernels[] = {&kernel_base, &kernel_base, &
 static const int row_step[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
 static const int column_step[2][LGA_DIRECTIONS] = {{1, 0, -1, -1, -1, 0}, {1, 1, 0, -1, 0, 1}};
 
-void lga_dice_roll(const struct lga_dice *dice, enum lga_simd simd, uint64_t key, uint32_t words,
+void lga_bits_roll(const struct lga_dice *dice, enum lga_simd simd, uint64_t key, uint32_t words,
                    uint64_t *const out[LGA_DICE])
 {
     kernels[simd]->roll(dice, key, words, out);
@@ -141,7 +141,8 @@ static uint64_t collide(const struct lga *lga, uint32_t y, uint64_t *out, unsign
     const uint64_t *below = wall_row(bits, row_at(lga, y, -1));
     const struct lga_row_collide row = {
         .words = bits->words, .stride = bits->stride, .effects = effects,
-        .key = lga_dice_key((struct lga_dice_source){lga->seed, lga->ticks, y, 0}), .dice = &lga->dice, .in = plane(bits, y, 0),
+        .key = lga_dice_key((struct lga_dice_source){lga->seed, lga->ticks, y, 0}),
+        .dice = &lga->dice, .in = plane(bits, y, 0),
         .out = out, .wall = wall_row(bits, y), .wall_left = below + column_step[y & 1][4],
         .wall_right = below + column_step[y & 1][5]
     };
@@ -235,7 +236,8 @@ static struct passed pass_band(const struct lga *lga, uint32_t band, unsigned ef
 {
     const struct lga_bits *bits = lga->bits;
     const uint32_t y0 = band_start(lga, band), y1 = band_start(lga, band + 1);
-    const uint32_t before = (band + bits->bands - 1) % bits->bands, after = (band + 1) % bits->bands;
+    const uint32_t before = (band + bits->bands - 1) % bits->bands;
+    const uint32_t after = (band + 1) % bits->bands;
     uint64_t *ring[3] = {ring_row(bits, before, 1), ring_row(bits, band, 0), NULL};
     struct passed sum = {0};
     for (uint32_t y = y0; y < y1; y++) {

@@ -29,7 +29,7 @@ struct lga_bits {
     uint64_t *sink;             /* [row][word]; NULL: none */
     uint8_t  *kinds;            /* a row of them for each band, while walls are drawn */
     uint64_t *rings;            /* rows after their collisions: [band][LGA_RING][plane][word] */
-    uint64_t *surplus;          /* sandpile: more than one rest grain after a collision, in two bits:
+    uint64_t *surplus;          /* sandpile: rest grains beyond the first, in two bits:
                                  * [row][low, high][word] */
     unsigned effects;
 };

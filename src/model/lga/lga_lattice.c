@@ -132,7 +132,8 @@ uint32_t lga_lattice_nearest(const struct lga_lattice *lattice, double x, double
         const uint32_t row = wrapped(floor(v) + k, lattice->rows);
         const uint32_t column = wrapped(round(u - 0.5 * (row & 1)), lattice->columns);
         const uint32_t site = row * lattice->columns + column;
-        const double distance = lga_lattice_distance(lattice, site, x + lattice->x0, y + lattice->y0);
+        const double distance = lga_lattice_distance(lattice, site, x + lattice->x0,
+                                                     y + lattice->y0);
         if (distance >= least) continue;
         least = distance;
         best = site;

@@ -37,7 +37,7 @@ static void roll(struct lga *lga)
                 out[k] = lga->rolled[k] + (size_t)row * lga->words;
             }
             const struct lga_dice_source source = {lga->seed, lga->ticks, row, stage};
-            lga_dice_roll(&lga->dice, lga->simd, lga_dice_key(source), lga->words, out);
+            lga_bits_roll(&lga->dice, lga->simd, lga_dice_key(source), lga->words, out);
         }
     }
 }
@@ -132,7 +132,8 @@ static void bend_sand(struct lga *lga, uint32_t site)
     const bool left = lga_sand_die(lga, LGA_DIE_BEND_SIDE, site);
     const int to = lga_sand_bend(lga, site, moving, left, &from);
     const uint32_t below = lga->beside[site][to];
-    if (moving & bit(to) || (lga->kind[below] == LGA_FLUID && lga->load[below] & LOAD_RESTS)) return;
+    if (lga->kind[below] == LGA_FLUID && lga->load[below] & LOAD_RESTS) return;
+    if (moving & bit(to)) return;
     lga->moving[site] = (uint8_t)((moving & ~bit(from)) | bit(to));
 }
 
@@ -199,7 +200,8 @@ bool lga_sand_allocate(struct lga *lga)
 {
     const size_t words = (size_t)lga->lattice.rows * lga->words;
     for (int k = 0; k < LGA_DICE; k++) {
-        if (!arena_array(&lga->arena, &lga->rolled[k], lga->dice.of[k].bits ? words : 0)) return false;
+        const bool open = lga->dice.of[k].bits > 0;
+        if (!arena_array(&lga->arena, &lga->rolled[k], open ? words : 0)) return false;
     }
     return arena_array(&lga->arena, &lga->heap, lga->rule.heap ? lga->sites : 0);
 }

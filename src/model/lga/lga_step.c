@@ -46,8 +46,8 @@ static bool stops(struct lga *lga, uint32_t site, int d, unsigned rest)
     const double stop = lga->rule.wall_stop;
     if (lga->rule.method == LGA_GMLG) {
         if (rest >= LGA_ROOM || stop <= 0) return false;
-        return stop >= 1 || rng_unit(rng_keyed(lga->seed, lga->ticks, site, DRAW_STOP + (uint64_t)d))
-                            < stop;
+        const uint64_t draw = DRAW_STOP + (uint64_t)d;
+        return stop >= 1 || rng_unit(rng_keyed(lga->seed, lga->ticks, site, draw)) < stop;
     }
     if (!lga->heap || d < 4 || !lga_sand_die(lga, LGA_DIE_PLATE, site)) return false;
     lga->heap[site] = true;
@@ -172,5 +172,6 @@ bool lga_step_allocate(struct lga *lga)
     if (!arena_array(arena, &lga->table, 1) || !arena_array(arena, &lga->queue, lga->queue_length)
         || !arena_array(arena, &lga->seen, lga->sites / 64 + 1)) return false;
     lga_table_fill(lga->table);
-    return lga_step_is_fast(&lga->rule) && !lga->plain ? lga_bits_allocate(lga) : allocate_plain(lga);
+    const bool fast = lga_step_is_fast(&lga->rule) && !lga->plain;
+    return fast ? lga_bits_allocate(lga) : allocate_plain(lga);
 }

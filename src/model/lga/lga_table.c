@@ -86,7 +86,7 @@ static void fill_inelastic(struct lga_case *entry, unsigned moving, int rest)
 }
 
 /* At most one rest grain goes into a collision.  The lossy column stops pairs and triples, with
- * more rest grains than a node may keep.  Of a pair's two ways the first turns it by +60 degrees. */
+ * more rest grains than a node may keep.  A pair's first way turns it by +60 degrees. */
 static void fill_sand(struct lga_case *entry, bool lossy, unsigned moving, int rest)
 {
     int present = 0;

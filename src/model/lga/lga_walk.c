@@ -72,7 +72,8 @@ void lga_walk(struct lga *lga, uint32_t site, uint32_t surplus, bool heap)
 {
     struct rng rng = rng_stream(lga->seed ^ heap, lga->ticks, site);
     for (; surplus > 0; surplus--) {
-        if (walk(lga, &rng, site / lga->lattice.columns, site % lga->lattice.columns, heap)) continue;
+        const uint32_t row = site / lga->lattice.columns, x = site % lga->lattice.columns;
+        if (walk(lga, &rng, row, x, heap)) continue;
         /* No place anywhere near: on it flies.  What was brought to rest has left slots free; in a
          * heap that is full to the last node it may pile up here. */
         struct lga_node node = lga_node_get(lga, site);
