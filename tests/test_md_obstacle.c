@@ -79,9 +79,9 @@ static void test_the_force_on_the_obstacle_is_that_of_the_reference(void **unuse
     /* F = a + b R_ob through these two gives the paper's slope of 111e3 within a tenth. */
     CHECK_NEAR((wide.force - one.force) / 0.5, 111e3, 15e3);
     const struct outcome thin = measure(1, 0.5, false, rows_wanted);
-    /* In proportion to rho but for the corona: it shields a little less in a thin stream, whose
-     * grains then push up to a tenth more each. */
-    CHECK_NEAR(thin.force / one.force, 0.525, 0.035);
+    /* Linear in rho: the paper's fit (15), F = 125000 rho + 1400, gives 0.5055.  Two forces known
+     * to 1 % each: three times the error of their ratio. */
+    CHECK_NEAR(thin.force / one.force, 0.5055, 0.022);
 }
 
 static void test_the_force_on_a_flat_obstacle_is_that_of_the_reference(void **unused)
