@@ -210,7 +210,7 @@ static void test_dice_fall_as_often_as_they_should(void **unused)
      * cut of the probability by a thousandth of the smaller of p and q. */
     enum { ROWS = 64, WORDS = 512 };
     static const double probabilities[] = {0.5, 0.25, 0.3, 0.9, 0.05, 0.999, 1e-3};
-    static uint64_t bits[WORDS];
+    static _Alignas(64) uint64_t bits[WORDS];         /* as an arena gives them */
     for (size_t k = 0; k < sizeof probabilities / sizeof *probabilities; k++) {
         const double p = probabilities[k];
         struct lga_dice dice = {{{0}}};
