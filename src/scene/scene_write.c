@@ -209,6 +209,10 @@ static void write_phase(FILE *out, const struct scene *scene, uint32_t index)
                       before->settings[g], now->settings[g], &entry->set, &first);
     }
     fputs(");\n", out);
+    if (entry->push.count == 0) return;
+    fputs("        push = ", out);
+    write_numbers(out, entry->push.values, entry->push.count);
+    fputs(";\n", out);
 }
 
 static void write_list(FILE *out, const struct scene_section *section, const struct scene *scene)
