@@ -189,3 +189,15 @@ void film_describe(const struct film *film, double time, struct encoder_job *job
              film->range[1], scene_unit(scene, painter_value_dimension(&film->view)));
     }
 }
+
+bool film_save(const struct film *film, double time, const char *path, struct error *error)
+{
+    struct encoder_job job = {0};
+    struct image_note notes[ENCODER_NOTES];
+    film_describe(film, time, &job);
+    for (uint32_t k = 0; k < job.note_count; k++) {
+        notes[k] = (struct image_note){job.notes[k].key, job.notes[k].text};
+    }
+    return image_save(&film->image, path, film->scene->output.png_level, notes, job.note_count,
+                      error);
+}

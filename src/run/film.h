@@ -49,6 +49,9 @@ void film_settle(struct film *film);
 bool film_draw(struct film *film, const struct grains *grains, uint64_t steps, double wall,
                struct error *error);
 
+/* Saves the frame drawn last, which belongs to `time`, as a PNG file that tells about itself. */
+bool film_save(const struct film *film, double time, const char *path, struct error *error);
+
 /* What a PNG file of this frame tells about itself. */
 void film_describe(const struct film *film, double time, struct encoder_job *job);
 
