@@ -50,7 +50,7 @@ static void choose_grid(struct dsmc *dsmc)
     dsmc->ax = axis_of(width, cell, scene->left, scene->right, radius);
     dsmc->ay = axis_of(height, cell, scene->bottom, scene->top, radius);
     dsmc->ax.wraps = dsmc->ax.periodic;
-    dsmc->ay.wraps = dsmc->ay.periodic && dsmc->settings.shear_rate == 0;
+    dsmc->ay.wraps = dsmc->ay.periodic && scene->shear_rate == 0;
     dsmc->cells = dsmc->ax.cells * dsmc->ay.cells;
     dsmc->blocks = dsmc_collide_blocks(dsmc);
 }

@@ -31,20 +31,20 @@ bool dsmc_flow_add(struct dsmc *dsmc, double x, double y, double vx, double vy, 
 void dsmc_flow_place(struct dsmc *dsmc)
 {
     const struct placed *placed = &dsmc->scene->placed;
-    const double *box = dsmc->scene->box, middle = 0.5 * (box[1] + box[3]);
-    double ux = 0, uy = 0;
+    const double rate = dsmc->scene->shear_rate;
+    double mean = 0, uy = 0;            /* of what the shear leaves */
     for (uint32_t k = 0; k < placed->count; k++) {
-        ux += placed->vx[k] / placed->count;
+        mean += (placed->vx[k] - rate * placed->y[k]) / placed->count;
         uy += placed->vy[k] / placed->count;
     }
     for (uint32_t k = 0; k < placed->count; k++) {
-        const double profile = dsmc->settings.shear_rate * (placed->y[k] - middle);
+        const double ux = mean + rate * placed->y[k];
         for (uint32_t copy = 0; copy < dsmc->settings.weight; copy++) {
             const double angle = copy == 0 ? 0
                 : 2 * M_PI * rng_unit(rng_keyed(dsmc->seed, turn_key, k, copy));
             const double vx = placed->vx[k] - ux, vy = placed->vy[k] - uy;
             const double c = cos(angle), s = sin(angle);
-            dsmc_flow_add(dsmc, placed->x[k], placed->y[k], ux + c * vx - s * vy + profile,
+            dsmc_flow_add(dsmc, placed->x[k], placed->y[k], ux + c * vx - s * vy,
                           uy + s * vx + c * vy, placed->spin ? placed->spin[k] : 0);
         }
     }
