@@ -9,6 +9,7 @@
 #include "model/dsmc/dsmc_flow.h"
 
 #include "base/rng.h"
+#include "model/stepping.h"
 
 #include <math.h>
 
@@ -56,16 +57,8 @@ static bool has_left(struct dsmc *dsmc, uint32_t i, double t)
 {
     const struct scene *scene = dsmc->scene;
     const struct dsmc_grain *g = &dsmc->grains[i];
-    const double *box = scene->box, far = 2 * dsmc->radius;
-    const double x = box[0] + (double)g->x, y = box[1] + (double)g->y;
-    if ((scene->left == BORDER_OPEN && x < box[0] - far)
-        || (scene->right == BORDER_OPEN && x > box[2] + far)
-        || (scene->bottom == BORDER_OPEN && y < box[1] - far)
-        || (scene->top == BORDER_OPEN && y > box[3] + far)) return true;
-    for (uint32_t k = 0; k < scene->sink_count; k++) {
-        const double *r = scene->sinks[k].region;
-        if (x >= r[0] && y >= r[1] && x <= r[2] && y <= r[3]) return true;
-    }
+    const double x = scene->box[0] + (double)g->x, y = scene->box[1] + (double)g->y;
+    if (stepping_left(scene, x, y, dsmc->radius)) return true;
     if (scene->screen_count == 0) return false;
     const double spin = dsmc->spins ? (double)dsmc->spins[i] / dsmc->radius : 0;
     return tally_cross(&dsmc->tally, scene, t, x, y, (double)g->vx, (double)g->vy, spin, dsmc->mass,
