@@ -77,7 +77,7 @@ static inline void tally_collision(struct tally *tally, double dx, double dy, do
 }
 
 /* At (x, y) momentum (px, py) is given to a grain whose centre is (rx, ry) away.  For a pair once:
- * (rx, ry) is then the way from the partner's centre to that of the grain, turned round. */
+ * (rx, ry) is then the way from the grain's centre to its partner's. */
 void tally_contact(struct tally *tally, double x, double y, double rx, double ry, double px,
                    double py);
 
