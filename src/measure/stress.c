@@ -46,11 +46,13 @@ static void moments_stress(const struct moments *sum, double out[3])
 
 void stress_kinetic(const struct grains *grains, const struct scene *scene, double out[3])
 {
+    const double *box = scene->box, area = (box[2] - box[0]) * (box[3] - box[1]);
+    const double rate = scene->shear_rate, middle = 0.5 * (box[1] + box[3]);
     struct moments sum = {0};
     for (uint32_t i = 0; i < grains->count; i++) {
-        moments_add(&sum, grains->mass[i], grains->vx[i], grains->vy[i]);
+        const double imposed = rate * (grains->y[i] - middle);
+        moments_add(&sum, grains->mass[i], grains->vx[i] - imposed, grains->vy[i]);
     }
-    const double *box = scene->box, area = (box[2] - box[0]) * (box[3] - box[1]);
     moments_stress(&sum, out);
     for (int k = 0; k < 3; k++) out[k] /= area;
 }
