@@ -64,7 +64,7 @@ bool cooling_restitutions(struct figure_job *job, struct error *error)
         figure_near(job, what, chart_at(&chart, k, 1), haff_energy(1),
                     haff_energy(1) * (0.11 + 3.0 / side));
     }
-    return figure_chart(job, &chart, "", error) && done;
+    return figure_chart(job, done, &chart, "", error);
 }
 
 static bool compare_models(struct figure_job *job, enum gas_kind last, struct error *error)
@@ -99,7 +99,7 @@ static bool compare_models(struct figure_job *job, enum gas_kind last, struct er
         figure_say(job, "DSMC/ED at the end, %g t0: %.2f", end,
                    chart_at(&chart, 2, end) / chart_at(&chart, 1, end));
     }
-    return figure_chart(job, &chart, "", error) && done;
+    return figure_chart(job, done, &chart, "", error);
 }
 
 bool cooling_three_models(struct figure_job *job, struct error *error)

@@ -108,16 +108,16 @@ static void note_file(char files[FIGURE_FILES][FIGURE_NAME], uint32_t *count, co
     snprintf(files[(*count)++], FIGURE_NAME, "%.70s.%s", stem, ending);
 }
 
-bool figure_chart(struct figure_job *job, struct chart *chart, const char *suffix,
+bool figure_chart(struct figure_job *job, bool done, struct chart *chart, const char *suffix,
                   struct error *error)
 {
     char stem[FIGURE_NAME];
     bool drawn = false;
     make_stem(job, suffix, stem);
-    const bool done = plot_save(chart, job->directory, stem, job->formats, &drawn, error);
+    done = done && plot_save(chart, job->directory, stem, job->formats, &drawn, error);
     if (done) note_file(job->tables, &job->table_count, stem, "csv");
     if (drawn) note_file(job->pictures, &job->picture_count, stem, "png");
-    job->undrawn = job->undrawn || !drawn;
+    job->undrawn = job->undrawn || (done && !drawn);
     chart_free(chart);
     return done;
 }

@@ -20,7 +20,10 @@ struct figure_job;
 #define FIGURES(X)                                                                              \
     X("simplified-3",   cooling_restitutions, "cooling for several r by DSMC")                  \
     X("simplified-5",   cooling_three_models, "K(t) by ED, DSMC and HSMC against eq. 4")        \
-    X("cooperative-2",  cooling_two_models,   "K(t) by ED and DSMC against eq. 18")
+    X("cooperative-2",  cooling_two_models,   "K(t) by ED and DSMC against eq. 18")             \
+    X("stream-5",       stream_density,       "force against the density of the stream")        \
+    X("stream-6",       stream_radius,        "force against the size of round and flat obstacles") \
+    X("stream-9",       stream_speed,         "force against the speed of the stream")
 
 struct figure {
     const char *name, *title;
@@ -97,8 +100,9 @@ void figure_hold(struct figure_job *job, bool holds, const char *format, ...)
 void figure_miss(struct figure_job *job, bool known, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Saves and draws a chart as NAME or NAME-suffix; frees it in any case. */
-bool figure_chart(struct figure_job *job, struct chart *chart, const char *suffix,
+/* If all went well so far (`done`), saves and draws a chart as NAME or NAME-suffix.  Frees it in
+ * any case; false if anything failed, here or before. */
+bool figure_chart(struct figure_job *job, bool done, struct chart *chart, const char *suffix,
                   struct error *error);
 
 /* The path of a new picture NAME-suffix.png, noted in the job. */
