@@ -20,7 +20,14 @@ struct figure_job;
 #define FIGURES(X)                                                                              \
     X("simplified-3",   cooling_restitutions, "cooling for several r by DSMC")                  \
     X("simplified-5",   cooling_three_models, "K(t) by ED, DSMC and HSMC against eq. 4")        \
+    X("simplified-6",   clusters_factor_three, "S(k) by ED, DSMC and HSMC at several times")    \
     X("cooperative-2",  cooling_two_models,   "K(t) by ED and DSMC against eq. 18")             \
+    X("cooperative-6",  clusters_pair,        "pair correlation g(r/d) by ED and DSMC")         \
+    X("cooperative-7",  clusters_factor_two,  "S(k) by ED and DSMC at several times")           \
+    X("cooperative-8",  clusters_restitutions, "K(C/N) and (Kx - Kz)/K for several r")          \
+    X("cooperative-9",  clusters_cut_off,     "K(t) and K(C/N) for t_c = 1e-10 to 1e-3 s")      \
+    X("cooperative-10", clusters_growth,      "K(t), C/N and elastic C/N of the large gas")     \
+    X("cooperative-11", clusters_snapshots,   "snapshots coloured by collisions per time")      \
     X("stream-5",       stream_density,       "force against the density of the stream")        \
     X("stream-6",       stream_radius,        "force against the size of round and flat obstacles") \
     X("stream-9",       stream_speed,         "force against the speed of the stream")

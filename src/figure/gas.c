@@ -29,10 +29,10 @@ void gas_wish(struct gas *gas, struct lab_wish *wish)
     lab_set(wish, "model=%s", models[gas->kind]);
     if (gas->kind == GAS_HSMC) lab_set(wish, "dsmc.method=hsmc");
     if (gas->kind == GAS_ED) lab_set(wish, "ed.t_c=%g", gas->t_c);
-    lab_set(wish, "box=[0,0,%.10g,%.10g]", gas->length, gas->length);
+    lab_set(wish, "box=[0,0,%.12g,%.12g]", gas->length, gas->length);
     lab_set(wish, "placements.[0].count=%u", count);
     /* A lattice that just fits: the last digit of its spacing must not push the last column out. */
-    if (gas->side) lab_set(wish, "placements.[0].spacing=%.8g", spacing * (1 - 1e-8));
+    if (gas->side) lab_set(wish, "placements.[0].spacing=%.12g", spacing * (1 - 1e-8));
     else lab_set(wish, "placements.[0].kind=random");
     lab_set(wish, "phases.[0].time=%.8g", gas->start);
     lab_set(wish, "phases.[0].set=[\"grains.[0].restitution=%g\"]", gas->restitution);
