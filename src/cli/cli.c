@@ -16,11 +16,17 @@ static const uint8_t run_options[] = {OPTION_output, SIMULATING, OPTION_resume, 
 static const uint8_t frame_options[] = {OPTION_output, OPTION_time, LOOK, SIMULATING, ALWAYS};
 static const uint8_t movie_options[] = {OPTION_output, OPTION_side_by_side, OPTION_fps,
     OPTION_every, LOOK, SIMULATING, ALWAYS};
+static const uint8_t live_options[] = {OPTION_commands, OPTION_output, OPTION_force, LOOK,
+    SIMULATING, ALWAYS};
+static const uint8_t replay_options[] = {OPTION_output, OPTION_force, OPTION_threads, OPTION_help,
+    OPTION_COUNT};
 static const uint8_t map_options[] = {OPTION_output, OPTION_field, OPTION_time, OPTION_average,
     OPTION_as, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_size, OPTION_zoom, OPTION_theme,
     OPTION_colormap, OPTION_scale, OPTION_map_range, OPTION_title, SIMULATING, ALWAYS};
 static const uint8_t export_options[] = {OPTION_to, OPTION_output, OPTION_frame, OPTION_time,
     OPTION_help, OPTION_COUNT};
+static const uint8_t figure_options[] = {OPTION_small, OPTION_output, OPTION_plot_as, OPTION_json,
+    ALWAYS};
 static const uint8_t check_options[] = {OPTION_explain, SIMULATING, OPTION_help, OPTION_COUNT};
 static const uint8_t scenes_options[] = {OPTION_json, OPTION_help, OPTION_COUNT};
 static const uint8_t info_options[] = {OPTION_frame, OPTION_time, OPTION_grain, OPTION_at,
@@ -43,6 +49,15 @@ const struct command cli_commands[] = {
      "-o NAME.mp4, .webm or .gif; ffmpeg must be installed.  --side-by-side puts several models\n"
      "(--model md,lga) or several scenes and runs into one picture; --size is that of one panel.\n",
      movie_options, 1, OPTIONS_OPERANDS_MAX, cli_movie},
+    {"live", "SCENE|RUN", "watches and steers a simulation while it runs",
+     "--commands FILE carries out a file of commands and ends.  A run goes on from its newest\n"
+     "checkpoint.  The session is written down in a directory, NAME-live unless -o says another,\n"
+     "and `sandreel replay` repeats it.  docs/live.md lists the commands.\n",
+     live_options, 1, 1, cli_live},
+    {"replay", "RUN", "repeats a live session from its log, to the same bytes",
+     "Writes beside it, RUN-replay unless -o says another.  Exit code 4 if it comes to another\n"
+     "state.\n",
+     replay_options, 1, 1, cli_replay},
     {"map", "SCENE|RUN", "field maps: density, velocity, granular temperature, ...",
      "A snapshot at -t (default: the end), or the mean over --average T1:T2.\n",
      map_options, 1, 1, cli_map},
@@ -50,6 +65,11 @@ const struct command cli_commands[] = {
      "--to csv: one table a frame, id,x,y,vx,vy,spin,radius,collision_rate,species.  Without\n"
      "--frame or -t all frames are exported.\n",
      export_options, 1, 1, cli_export},
+    {"figure", "[ID...]", "makes figures of the four papers again, with a verdict on each",
+     "Without an ID it lists them.  ID may be `all`; several make one page, index.html.  All goes\n"
+     "into the directory figures unless -o says another: pictures, a table of every curve, and\n"
+     "gnuplot's script.  Exit code 4 if a verdict is other than `agrees`.\n",
+     figure_options, 0, OPTIONS_OPERANDS_MAX, cli_figure},
     {"check", "SCENE", "tests a scene and simulates nothing", "Exit code 3 if it has errors.\n",
      check_options, 1, 1, cli_check},
     {"scenes", "", "lists the built-in scenes and the models that can run each", "",

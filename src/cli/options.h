@@ -70,6 +70,9 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(average,   "average",   0,   "T1:T2", NULL, FORM_PLAIN,                                   \
       "mean over this time; default: a snapshot")                                               \
     X(as,        "as",        0,   "LIST",  NULL, FORM_PLAIN, "formats: png,npy,vti,csv")       \
+    X(plot_as,   "as",        0,   "LIST",  NULL, FORM_PLAIN, "formats: png,svg,pdf,text")      \
+    X(small,     "quick",     0,   NULL,    NULL, FORM_PLAIN,                                   \
+      "reduced numbers: each figure within a minute")                                           \
     X(to,        "to",        0,   "FORMAT", NULL, FORM_PLAIN, "csv, npy")                      \
     X(explain,   "explain",   0,   NULL,    NULL, FORM_PLAIN,                                   \
       "which effects are on, and which off")                                                    \
@@ -78,6 +81,8 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(grain,     "grain",     0,   "ID",    NULL, FORM_PLAIN, "tells about one grain")          \
     X(at,        "at",        0,   "X,Y",   NULL, FORM_PLAIN,                                   \
       "tells about the grain nearest to a point")                                               \
+    X(commands,  "commands",  0,   "FILE",  NULL, FORM_PLAIN,                                   \
+      "carries out the commands of a file")                                                     \
     X(json,      "json",      0,   NULL,    NULL, FORM_PLAIN, "prints one JSON document")       \
     X(against,   "against",   0,   "OLD.json", NULL, FORM_PLAIN,                                \
       "prints ratios to an earlier bench")                                                      \
