@@ -5,9 +5,11 @@
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "live/conduct.h"
+#include "live/web.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 static void tell(void *context, const char *line, const char *reply, bool failed)
 {
@@ -17,12 +19,48 @@ static void tell(void *context, const char *line, const char *reply, bool failed
     (void)line;
 }
 
+/* Where the page is, also for those who sit elsewhere. */
+static void tell_address(const struct web *web)
+{
+    char host[256] = "HOST";
+    gethostname(host, sizeof host - 1);
+    printf("%s\n", web_address(web));
+    fflush(stdout);
+    fprintf(stderr, "from another machine: ssh -L %u:127.0.0.1:%u %s, then the same address\n",
+            (unsigned)web_port(web), (unsigned)web_port(web), host);
+}
+
+static bool show_web(const struct options *options, struct session *session, struct error *error)
+{
+    uint64_t port = 0;
+    const bool any = options->values[OPTION_web][0] == 0;
+    if (!any && !options_whole(options, OPTION_web, 0, &port, error)) return false;
+    if (port > UINT16_MAX) {
+        return error_set_code(error, EXIT_USAGE, "--web=%s: a port is at most %d",
+                              options->values[OPTION_web], UINT16_MAX);
+    }
+    struct loop *loop = loop_create(session, error);
+    struct web *web = loop ? web_open(loop, (uint16_t)port, error) : NULL;
+    bool done = web != NULL;
+    if (done) {
+        tell_address(web);
+        done = loop_run(loop, &opening_signal, error);
+    }
+    web_close(web);
+    loop_destroy(loop);
+    return done;
+}
+
 static bool carry_out(const struct options *options, struct session *session, struct error *error)
 {
     const struct conduct_file file = {.path = options->values[OPTION_commands], .tell = tell,
                                       .signal = &opening_signal};
-    if (file.path) return conduct_file(session, &file, error);
-    return error_set_code(error, EXIT_USAGE, "live needs --commands FILE here");
+    if (file.path && !conduct_file(session, &file, error)) return false;
+    if (options_given(options, OPTION_web) && !session->ended) {
+        return show_web(options, session, error);
+    }
+    return file.path || error_set_code(error, EXIT_USAGE, "live: say how to watch it: --web in a "
+                                       "browser, --commands FILE from a file");
 }
 
 int cli_live(const struct options *options)
