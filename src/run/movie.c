@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -76,6 +77,7 @@ bool movie_available(struct error *error)
 static void become_ffmpeg(int input, int complaints, char *const *arguments)
 {
     setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);   /* whose run is killed, its film is of no use */
     signal(SIGPIPE, SIG_DFL);
     const int nothing = open("/dev/null", O_WRONLY);
     dup2(input, STDIN_FILENO);
@@ -96,9 +98,15 @@ static bool start(struct movie *movie, const struct format *format, double frame
     size_t count = 0;
     while (arguments[count]) count++;
     for (size_t k = 0; format->options[k]; k++) arguments[count++] = format->options[k];
-    arguments[count++] = "-f";
-    arguments[count++] = format->muxer;
-    arguments[count++] = movie->partial;
+    /* "file:", or a colon in the path would end the name of a protocol; bitexact, or a film gets
+     * numbers drawn by lot, and two runs differ. */
+    char output[sizeof movie->partial + 8];
+    snprintf(output, sizeof output, "file:%s", movie->partial);
+    const char *const ends_with[] = {"-fflags", "+bitexact", "-flags:v", "+bitexact", "-f",
+                                     format->muxer, output};
+    for (size_t k = 0; k < sizeof ends_with / sizeof *ends_with; k++) {
+        arguments[count++] = ends_with[k];
+    }
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) return error_set(error, "no pipe: %s", strerror(errno));
     movie->process = fork();
@@ -214,6 +222,7 @@ bool movie_commit(struct movie *movie, struct error *error)
 {
     bool done = movie->process > 0 && finish(movie);
     if (!done) complain(movie, error);
+    if (done) file_sync(movie->partial);
     if (done && rename(movie->partial, movie->path) != 0) {
         done = error_set(error, "%s: cannot name the movie: %s", movie->path, strerror(errno));
     }
