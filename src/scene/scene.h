@@ -179,6 +179,7 @@ struct scene {
     double box[4];              /* x0 y0 x1 y1 */
     int    left, right, bottom, top;    /* enum border */
     double gravity[2];
+    double shear_rate;          /* Lees-Edwards, du_x/dy */
 
     uint32_t species_count;   struct species   *species;
     uint32_t placement_count; struct placement *placements;

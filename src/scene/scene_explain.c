@@ -189,7 +189,10 @@ static bool derive(const struct scene *scene, uint32_t bit, struct scene_reason 
     case EFFECT_BIT_OUTFLOW:      return outflow(scene, reason);
     case EFFECT_BIT_SCREEN:       return counted(scene, reason, "screens", scene->screen_count);
     case EFFECT_BIT_COLLISION_RATE: return collision_rate(scene, reason);
-    case EFFECT_BIT_SHEAR:        return off(reason, "no border is sheared");
+    case EFFECT_BIT_SHEAR:
+        return scene->shear_rate != 0 ? on(scene, reason, "shear_rate", "shear_rate = %g",
+                                           scene->shear_rate)
+                                      : off(reason, "shear_rate is zero");
     /* How friction is carried is a model's own: discs spin, springs remember, lattices do
      * neither. */
     case EFFECT_BIT_ROTATION:     return off(reason, "no torque turns a grain");

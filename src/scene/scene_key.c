@@ -53,6 +53,8 @@ static const struct key top_keys[] = {
     CHOICE(scene, bottom, "wall", BORDERS, "the bottom border"),
     CHOICE(scene, top, "wall", BORDERS, "the top border"),
     VECTOR(scene, gravity, "(0, 0)", -FAR, FAR, "acceleration", "acceleration of every grain"),
+    REAL(scene, shear_rate, "0", -FAR, FAR, "1/time",
+         "du_x/dy: uniform shear by Lees-Edwards borders; needs four periodic borders"),
 };
 
 static const struct key species_keys[] = {
