@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Two outputs nearer than this share of their time are meant for the same time. */
 static const double same_time = 1e-9;
@@ -101,6 +102,7 @@ static bool open_pictures(struct writer *writer, bool resume, struct error *erro
     if (!film_open(&writer->film, scene, writer->sim->model, &view, error)) return false;
     writer->draws_later = film_needs_gathering(&writer->film);
     writer->keeps_grains = scene->output.dump || writer->draws_later;
+    if (resume && !writer->keeps_grains) folder_clear(writer->directory, "dump");
     writer->movie_late = *scene->output.movie && resume && !writer->draws_later;
     return !*scene->output.movie || writer->draws_later || resume || begin_movie(writer, error);
 }
@@ -252,7 +254,13 @@ bool writer_serve(struct writer *writer, double t, double wall, struct error *er
 
 bool writer_sync(struct writer *writer, struct error *error)
 {
-    return encoder_wait(writer->encoder, error) && histograms_sync(&writer->histograms, error)
+    if (!encoder_wait(writer->encoder, error)) return false;
+    static const char *const folders[] = {".", "frames", "maps", "dump"};
+    for (size_t k = 0; k < sizeof folders / sizeof *folders; k++) {
+        char path[FILE_PATH_MAX];
+        file_sync(folder_path(path, writer->directory, "%s", folders[k]));
+    }
+    return histograms_sync(&writer->histograms, error)
         && (!writer->logbook.ledger.stream || ledger_sync(&writer->logbook.ledger, error));
 }
 
@@ -321,11 +329,18 @@ bool writer_finish(struct writer *writer, double wall, bool (*step)(void *, uint
         done = movie_commit(writer->movie, error);
         writer->movie = NULL;
     }
-    if (done && writer->draws_later && !writer->sim->scene->output.dump) {
-        folder_clear(writer->directory, "dump");
-    }
     enter(writer, before);
     return done;
+}
+
+/* The index goes first: without it the other files mean nothing, so that it does not matter where
+ * this is interrupted. */
+void writer_tidy(const struct writer *writer)
+{
+    char path[FILE_PATH_MAX];
+    if (!writer->draws_later || writer->sim->scene->output.dump) return;
+    unlink(folder_path(path, writer->directory, "dump/index.csv"));
+    folder_clear(writer->directory, "dump");
 }
 
 void writer_archive(struct writer *writer, struct archive *archive)

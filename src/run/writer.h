@@ -64,13 +64,16 @@ double writer_due(const struct writer *writer);
 /* Writes all that is due at t. */
 bool writer_serve(struct writer *writer, double t, double wall, struct error *error);
 
-/* Everything queued is on the disk (before a checkpoint refers to it). */
+/* Everything queued is on the disk, with its names (before a checkpoint refers to it). */
 bool writer_sync(struct writer *writer, struct error *error);
 
 /* After the run: the frames that had to wait, the movie.  `step` (may be NULL) is called after
  * each frame and stops the drawing by returning false, with the error filled. */
 bool writer_finish(struct writer *writer, double wall, bool (*step)(void *, uint64_t, uint64_t),
                    void *context, struct error *error);
+
+/* Removes what only the run itself needed, once the manifest tells that it is done. */
+void writer_tidy(const struct writer *writer);
 
 void writer_archive(struct writer *writer, struct archive *archive);
 void writer_close(struct writer *writer);
