@@ -197,6 +197,8 @@ static const struct key output_keys[] = {
     REAL(output, frames, "0", 0, FAR, "time", "between pictures; 0: none"),
     REAL(output, log, "0", 0, FAR, "time", "between rows of log.csv; 0: none"),
     REAL(output, maps, "0", 0, FAR, "time", "between maps; 0: none"),
+    REAL(output, trajectory, "0", 0, FAR, "time",
+         "between frames of trajectory.h5 (H5MD, compressed); 0: none"),
     REAL(output, checkpoint, "0", 0, FAR, "time", "between checkpoints; 0: none"),
     REAL(output, checkpoint_wall, "600", 0, FAR, "s of wall time", "between checkpoints; 0: none"),
     BOOL(output, dump, "false", "keep the grains' states at each frame"),
