@@ -56,8 +56,8 @@ void snapshot_extxyz(FILE *stream, const struct grains *grains, const struct sce
     fputs("\" Origin=\"", stream);
     csv_number(stream, box[0]);
     csv_numbers(stream, ' ', (const double[]){box[1], 0}, 2);
-    fprintf(stream, "\" pbc=\"%c %c F\" Properties=species:S:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:"
-            "angle:R:1:spin:R:1:collision_rate:R:1:id:I:1:type:I:1 Time=",
+    fprintf(stream, "\" pbc=\"%c %c F\" Properties=species:S:1:pos:R:3:velo:R:3:radius:R:1:"
+            "mass:R:1:angle:R:1:spin:R:1:collision_rate:R:1:id:I:1:type:I:1 Time=",
             scene->left == BORDER_PERIODIC ? 'T' : 'F',
             scene->bottom == BORDER_PERIODIC ? 'T' : 'F');
     csv_number(stream, grains->time);

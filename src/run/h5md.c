@@ -327,7 +327,8 @@ struct h5md *h5md_resume(const char *path, uint64_t frames, struct error *error)
     /* Killed within a frame, the datasets may be of different length: the shortest counts. */
     h5md->frames = frames;
     for (int e = 0; e < ELEMENTS + 2 && !h5md->failed; e++) {
-        extent(h5md, e < ELEMENTS ? h5md->values[e] : e == ELEMENTS ? h5md->step : h5md->time, size);
+        const hid_t sets[2] = {h5md->step, h5md->time};
+        extent(h5md, e < ELEMENTS ? h5md->values[e] : sets[e - ELEMENTS], size);
         if (e < ELEMENTS && size[1] > h5md->rows) h5md->rows = size[1];
         if (size[0] >= frames) continue;
         error_set(error, "%s: %llu frames, but the checkpoint knows %llu; the trajectory cannot be "
