@@ -156,6 +156,7 @@ bool film_draw(struct film *film, const struct grains *grains, uint64_t steps, d
         .field_range = {film->field_range[0], film->field_range[1]},
         .variables = film->variables, .variable_count = FILM_VARIABLES,
     };
+    painter_place(&picture, &film->transform);
     const bool done = painter_frame(film->painter, &picture, &film->image, error);
     if (film->map) field_free(&field);
     return done;

@@ -23,6 +23,7 @@ struct film {
     struct view     view;
     struct painter *painter;
     struct image    image;              /* the last frame drawn */
+    struct transform transform;         /* where it shows the scene */
     struct map     *map;                /* of the field beneath the grains; NULL: none */
     int             map_kind;
     double          range[2], field_range[2];   /* NANs: each frame its own */
