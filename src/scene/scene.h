@@ -101,7 +101,13 @@ struct screen {
 struct sink { double region[4]; };
 
 /* One entry of `phases`: keys that change at a time. */
-struct phase_entry { double time; struct key_texts set; };
+struct phase_entry {
+    double time;
+    struct key_texts set;
+    struct key_reals push;      /* x, y, radius, vx, vy of each push (model/impulse.h), in turn */
+};
+
+enum { PHASE_PUSH = 5 };        /* numbers of one push */
 
 enum color_by { COLOR_SPEED, COLOR_COLLISIONS, COLOR_SPIN, COLOR_SPECIES, COLOR_RADIUS,
                 COLOR_PRESSURE, COLOR_NONE };
@@ -223,6 +229,8 @@ struct scene_request {
     const struct key_group *const *groups;      /* the models' settings */
     uint32_t    group_count;
     bool        place;          /* also place the grains (dense packings take time) */
+    const struct scene *grains_of;      /* or take over the grains that this scene has placed; it
+                                         * must outlive the new one.  NULL: none */
 };
 
 /* Reads, overrides, resolves, checks and places.  NULL if anything is wrong: then `findings` holds

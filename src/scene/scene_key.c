@@ -148,6 +148,8 @@ static const struct key sink_keys[] = {
 static const struct key phase_keys[] = {
     REAL(phase_entry, time, NULL, KEY_POSITIVE, FAR, "time", "when it begins"),
     TEXTS(phase_entry, set, "what changes, as \"KEY=VALUE\"; it stays for later phases"),
+    ROW(phase_entry, push, KEY_REALS, "", -FAR, FAR, "", NULL,
+        "x, y, radius, vx, vy: grains around a point gain a velocity; five more for another push"),
 };
 
 static const struct key view_keys[] = {
