@@ -188,7 +188,9 @@ static double sheared_temperature(double rate)
 {
     const double side = 60;
     char settings[200];
-    snprintf(settings, sizeof settings, "method = \"plain\"; cell = 2.0; shear_rate = %g;", rate);
+    /* Closes the group of settings: the rate is the scene's own. */
+    snprintf(settings, sizeof settings,
+             "method = \"plain\"; cell = 2.0; }; shear_rate = %g; md = {", rate);
     struct scenes_run *run = begin_gas(side, 0.9, settings);
     double sum = 0;
     enum { FIRST = 20, LAST = 80 };

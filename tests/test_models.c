@@ -73,6 +73,8 @@ static const struct example examples[] = {
      "           velocity = (-0.5, 0.0); });"
      "screens = ({ kind = \"circle\"; center = (0.0, 0.0); radius = 14.0; });"
      "measure = { collisions = true; };", 6, true, true},
+    {"sheared by the borders", "until = 6.0; box = [0.0, 0.0, 18.0, 18.0]; shear_rate = -0.3;"
+     PERIODIC GRAINS GAS, 5, true, false},
     {"many grains for two threads", "until = 0.5; box = [0.0, 0.0, 75.0, 75.0];" PERIODIC GRAINS
      "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 16.0; "
      "});", 0.5, false, false},

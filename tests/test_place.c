@@ -166,6 +166,22 @@ static void test_the_temperature_is_exact_and_the_mean_velocity_is_the_asked_one
     scene_free(scene);
 }
 
+static void test_a_sheared_scene_begins_with_a_linear_profile(void **unused)
+{
+    (void)unused;
+    struct scene *scene = load("until = 1; box = [0, -4, 20, 16]; left = \"periodic\";\n"
+        "right = \"periodic\"; top = \"periodic\"; bottom = \"periodic\"; shear_rate = -0.25;\n" ONE
+        "placements = ( { count = 100; velocity = (3, -1); temperature = 2.5; } );");
+    const struct placed *p = &scene->placed;
+    double square = 0;
+    for (uint32_t i = 0; i < p->count; i++) {
+        const double ux = p->vx[i] - 3 + 0.25 * (p->y[i] - 6);  /* the middle of the box is y = 6 */
+        square += pow(ux, 2) + pow(p->vy[i] + 1, 2);
+    }
+    CHECK_NEAR(square / (2 * p->count), 2.5, 1e-12);            /* heat is what the flow leaves */
+    scene_free(scene);
+}
+
 static void test_radii_are_uniform_in_their_range_or_out_of_their_list(void **unused)
 {
     (void)unused;
@@ -203,6 +219,7 @@ int main(void)
         cmocka_unit_test(test_random_packings_reach_the_asked_fraction_without_overlap),
         cmocka_unit_test(test_the_same_seed_packs_alike_and_another_one_does_not),
         cmocka_unit_test(test_the_temperature_is_exact_and_the_mean_velocity_is_the_asked_one),
+        cmocka_unit_test(test_a_sheared_scene_begins_with_a_linear_profile),
         cmocka_unit_test(test_radii_are_uniform_in_their_range_or_out_of_their_list),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -291,6 +291,7 @@ static void test_effects_follow_from_keys_and_name_them(void **unused)
     CHECK(explains(scene, EFFECT_FRICTION, true, "grains.[0].friction = 0.25 (effects.cfg:3)"));
     CHECK(explains(scene, EFFECT_OUTFLOW, true, "effects.cfg:1"));
     CHECK(explains(scene, EFFECT_GRAVITY, false, "gravity is zero"));
+    CHECK(explains(scene, EFFECT_SHEAR, false, "shear_rate is zero"));
     scene->effects |= EFFECT_STATIC_FRICTION;           /* as a model's resolve would */
     CHECK(explains(scene, EFFECT_STATIC_FRICTION, true, "md"));
     scene_free(scene);
@@ -299,6 +300,13 @@ static void test_effects_follow_from_keys_and_name_them(void **unused)
         "right = \"periodic\"; top = \"periodic\"; bottom = \"periodic\";\n"
         "grains = ( { radius = 0.5; restitution = 1; } ); placements = ( { count = 20; } );", NULL);
     CHECK(scene->effects == EFFECT_PERIODIC);
+    scene_free(scene);
+    scene = load("sheared.cfg", "until = 4; box = [0, 0, 10, 10]; left = \"periodic\";\n"
+        "right = \"periodic\"; top = \"periodic\"; bottom = \"periodic\";\n"
+        "shear_rate = -0.5;\n"
+        "grains = ( { radius = 0.5; restitution = 1; } ); placements = ( { count = 20; } );", NULL);
+    CHECK(scene->effects == (EFFECT_PERIODIC | EFFECT_SHEAR));
+    CHECK(explains(scene, EFFECT_SHEAR, true, "shear_rate = -0.5 (sheared.cfg:3)"));
     scene_free(scene);
 }
 

@@ -15,6 +15,8 @@ bool grains_create(struct grains *grains, uint32_t capacity, uint32_t contact_ca
         && arena_array(arena, &grains->radius, capacity)
         && arena_array(arena, &grains->mass, capacity)
         && arena_array(arena, &grains->collision_rate, capacity)
+        && arena_array(arena, &grains->collisions, capacity)
+        && arena_array(arena, &grains->collisions_elastic, capacity)
         && arena_array(arena, &grains->species, capacity)
         && arena_array(arena, &grains->contacts, contact_capacity);
     if (done) return true;

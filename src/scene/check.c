@@ -314,6 +314,11 @@ static void check_borders(struct check check)
         ERROR("box", "a periodic box must be at least 3 diameters (%g) high, not %g", least,
               height);
     }
+    if (scene->shear_rate != 0 && !(x_left && x_right && y_low && y_high)) {
+        ERROR("shear_rate", "'shear_rate' = %g moves the images of the box above and below along "
+              "it, so left, right, bottom and top must all be \"periodic\"; or delete it and shear "
+              "by walls with a 'velocity' or a 'surface_speed'", scene->shear_rate);
+    }
 }
 
 static void check_view(struct check check)

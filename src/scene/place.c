@@ -38,7 +38,8 @@ double place_area(const struct scene *scene, const struct placement *placement)
 
 /* ---- velocities ---------------------------------------------------------------------------- */
 
-/* Normal deviates, then shifted and scaled: the mean is zero and <v'^2>/2 is exact. */
+/* Normal deviates, then shifted and scaled: the mean is zero and <v'^2>/2 is exact.  A sheared
+ * scene begins with its profile, u_x = rate (y - middle). */
 static void set_velocities(const struct placer *placer, const struct placement *placement,
                            uint32_t number, uint32_t from)
 {
@@ -57,8 +58,11 @@ static void set_velocities(const struct placer *placer, const struct placement *
         square += g->vx[i] * g->vx[i] + g->vy[i] * g->vy[i];
     }
     const double factor = warm ? sqrt(2 * placement->temperature * count / square) : 0;
+    const struct scene *scene = placer->scene;
+    const double middle = 0.5 * (scene->box[1] + scene->box[3]);
     for (uint32_t i = from; i < g->count; i++) {
-        g->vx[i] = factor * g->vx[i] + placement->velocity[0];
+        g->vx[i] = factor * g->vx[i] + placement->velocity[0] + scene->shear_rate
+                                                                * (g->y[i] - middle);
         g->vy[i] = factor * g->vy[i] + placement->velocity[1];
         g->spin[i] = placement->spin;
     }

@@ -9,6 +9,7 @@
 #include "model/dsmc/dsmc_look.h"
 #include "model/dsmc/dsmc_move.h"
 #include "model/dsmc/dsmc_walls.h"
+#include "model/stepping.h"
 
 #include <math.h>
 #include <omp.h>
@@ -17,18 +18,9 @@
 static const double full_fraction = M_PI / 4;   /* hsmc: four discs in a cell of two diameters */
 static const double displacement_max = 3;       /* diameters; (1 + r) / (2 r) has no limit */
 
-/* Grains that there may be at once. */
-static double capacity(const struct scene *scene)
+static uint32_t room_for(const struct scene *scene, const struct dsmc_settings *settings)
 {
-    if (scene->count_max > 0) return fmax(scene->count_max, scene->placed.count);
-    if (scene->source_count == 0) return fmax(scene->placed.count, 1);
-    const double area = (scene->box[2] - scene->box[0]) * (scene->box[3] - scene->box[1]);
-    const double full = area / (M_PI * scene->radius_mean * scene->radius_mean);
-    double given = scene->placed.count;
-    for (uint32_t s = 0; s < scene->source_count; s++) {
-        given += scene->sources[s].count > 0 ? (double)scene->sources[s].count : (double)INFINITY;
-    }
-    return fmin(given, scene->placed.count + full) + 1;
+    return (uint32_t)fmin((double)stepping_room(scene) * settings->weight, DSMC_NAME);
 }
 
 static struct dsmc_axis axis_of(double length, double cell, int low, int high, double radius)
@@ -50,7 +42,7 @@ static void choose_grid(struct dsmc *dsmc)
     dsmc->ax = axis_of(width, cell, scene->left, scene->right, radius);
     dsmc->ay = axis_of(height, cell, scene->bottom, scene->top, radius);
     dsmc->ax.wraps = dsmc->ax.periodic;
-    dsmc->ay.wraps = dsmc->ay.periodic && dsmc->settings.shear_rate == 0;
+    dsmc->ay.wraps = dsmc->ay.periodic && scene->shear_rate == 0;
     dsmc->cells = dsmc->ax.cells * dsmc->ay.cells;
     dsmc->blocks = dsmc_collide_blocks(dsmc);
 }
@@ -111,10 +103,8 @@ static void set_up(struct dsmc *dsmc, const struct scene *scene)
     dsmc->dt = dsmc->settings.dt;
     dsmc->radius = scene->radius_mean;
     dsmc->threads = (uint32_t)omp_get_max_threads();
-    const double window = scene->measure.collision_window;
-    dsmc->window_length = isfinite(window) ? window
-                        : scene->output.frames > 0 ? scene->output.frames : 100 * dsmc->dt;
-    dsmc->count_max = (uint32_t)fmin(capacity(scene) * dsmc->settings.weight, DSMC_NAME);
+    dsmc->window_length = stepping_window(scene, dsmc->dt);
+    dsmc->count_max = room_for(scene, &dsmc->settings);
     choose_grid(dsmc);
     choose_law(dsmc);
 }
@@ -151,18 +141,6 @@ static enum advance dsmc_advance(void *state, double t_end, uint64_t budget)
     return ADVANCE_REACHED;
 }
 
-static void archive_time(struct dsmc *dsmc, struct archive *archive)
-{
-    double dt = dsmc->dt;
-    archive_value(archive, "dsmc.dt", &dt);
-    archive_value(archive, "dsmc.epoch", &dsmc->epoch);
-    archive_value(archive, "dsmc.steps", &dsmc->steps);
-    archive_value(archive, "dsmc.steps_here", &dsmc->steps_here);
-    if (dt == dsmc->dt) return;
-    dsmc->epoch += (double)dsmc->steps_here * dt;
-    dsmc->steps_here = 0;
-}
-
 /* Positions count from the corner of the box, which a phase may move. */
 static void archive_origin(struct dsmc *dsmc, struct archive *archive)
 {
@@ -187,7 +165,8 @@ static void dsmc_archive(void *state, struct archive *archive)
     archive_array(archive, "dsmc.spins", dsmc->spins, dsmc->count);
     archive_array(archive, "dsmc.contacts", dsmc->contacts, dsmc->count);
     archive_value(archive, "dsmc.window", &dsmc->window);
-    archive_time(dsmc, archive);
+    stepping_archive(archive, "dsmc", dsmc->dt,
+                     (struct stepping_clock){&dsmc->epoch, &dsmc->steps, &dsmc->steps_here});
     archive_origin(dsmc, archive);
     archive_array(archive, "dsmc.cursors", dsmc->cursors, dsmc->scene->source_count);
     uint64_t *const totals[] = {&dsmc->collisions, &dsmc->rejected, &dsmc->tangential_count,
@@ -219,7 +198,7 @@ static uint64_t dsmc_memory(const struct scene *scene)
                                                                  : 0);
     const double cell = sizeof(uint32_t) * (1 + (double)omp_get_max_threads())
                       + (s.method == DSMC_HSMC ? sizeof(uint16_t) : 0);
-    return (uint64_t)((double)grain * fmin(capacity(scene) * s.weight, DSMC_NAME) + cell * cells);
+    return (uint64_t)((double)grain * room_for(scene, &s) + cell * cells);
 }
 
 const struct model model_dsmc = {

@@ -17,6 +17,8 @@
 #include "model/model.h"
 #include "model/source.h"
 
+#include <math.h>
+
 #define FORCE_INLINE static inline __attribute__((always_inline))
 
 /* Addition, multiplication, division and square root round alike in all of them. */
@@ -122,6 +124,16 @@ struct dsmc {
 static inline double dsmc_time(const struct dsmc *dsmc)
 {
     return dsmc->epoch + (double)dsmc->steps_here * dsmc->dt;
+}
+
+/* Lees-Edwards: how fast the image of the box above moves, and how far it is ahead a step on. */
+struct dsmc_image { float speed, way; };
+
+static inline struct dsmc_image dsmc_image(const struct dsmc *dsmc)
+{
+    const double speed = dsmc->scene->shear_rate * (double)dsmc->ay.length;
+    const double way = fmod(speed * (dsmc_time(dsmc) + dsmc->dt), (double)dsmc->ax.length);
+    return (struct dsmc_image){(float)speed, (float)way};
 }
 
 static inline uint32_t dsmc_axis_cell(const struct dsmc_axis *axis, float x)

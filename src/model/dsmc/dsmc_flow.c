@@ -9,6 +9,7 @@
 #include "model/dsmc/dsmc_flow.h"
 
 #include "base/rng.h"
+#include "model/stepping.h"
 
 #include <math.h>
 
@@ -31,20 +32,20 @@ bool dsmc_flow_add(struct dsmc *dsmc, double x, double y, double vx, double vy, 
 void dsmc_flow_place(struct dsmc *dsmc)
 {
     const struct placed *placed = &dsmc->scene->placed;
-    const double *box = dsmc->scene->box, middle = 0.5 * (box[1] + box[3]);
-    double ux = 0, uy = 0;
+    const double rate = dsmc->scene->shear_rate;
+    double mean = 0, uy = 0;            /* of what the shear leaves */
     for (uint32_t k = 0; k < placed->count; k++) {
-        ux += placed->vx[k] / placed->count;
+        mean += (placed->vx[k] - rate * placed->y[k]) / placed->count;
         uy += placed->vy[k] / placed->count;
     }
     for (uint32_t k = 0; k < placed->count; k++) {
-        const double profile = dsmc->settings.shear_rate * (placed->y[k] - middle);
+        const double ux = mean + rate * placed->y[k];
         for (uint32_t copy = 0; copy < dsmc->settings.weight; copy++) {
             const double angle = copy == 0 ? 0
                 : 2 * M_PI * rng_unit(rng_keyed(dsmc->seed, turn_key, k, copy));
             const double vx = placed->vx[k] - ux, vy = placed->vy[k] - uy;
             const double c = cos(angle), s = sin(angle);
-            dsmc_flow_add(dsmc, placed->x[k], placed->y[k], ux + c * vx - s * vy + profile,
+            dsmc_flow_add(dsmc, placed->x[k], placed->y[k], ux + c * vx - s * vy,
                           uy + s * vx + c * vy, placed->spin ? placed->spin[k] : 0);
         }
     }
@@ -56,16 +57,8 @@ static bool has_left(struct dsmc *dsmc, uint32_t i, double t)
 {
     const struct scene *scene = dsmc->scene;
     const struct dsmc_grain *g = &dsmc->grains[i];
-    const double *box = scene->box, far = 2 * dsmc->radius;
-    const double x = box[0] + (double)g->x, y = box[1] + (double)g->y;
-    if ((scene->left == BORDER_OPEN && x < box[0] - far)
-        || (scene->right == BORDER_OPEN && x > box[2] + far)
-        || (scene->bottom == BORDER_OPEN && y < box[1] - far)
-        || (scene->top == BORDER_OPEN && y > box[3] + far)) return true;
-    for (uint32_t k = 0; k < scene->sink_count; k++) {
-        const double *r = scene->sinks[k].region;
-        if (x >= r[0] && y >= r[1] && x <= r[2] && y <= r[3]) return true;
-    }
+    const double x = scene->box[0] + (double)g->x, y = scene->box[1] + (double)g->y;
+    if (stepping_left(scene, x, y, dsmc->radius)) return true;
     if (scene->screen_count == 0) return false;
     const double spin = dsmc->spins ? (double)dsmc->spins[i] / dsmc->radius : 0;
     return tally_cross(&dsmc->tally, scene, t, x, y, (double)g->vx, (double)g->vy, spin, dsmc->mass,

@@ -28,6 +28,7 @@ struct sweep {
     float gx, gy, dt, way_max, slow2, roll;
     int   down;                 /* row step along gravity, 0: none */
     uint32_t nx, ny;
+    struct dsmc_image image;    /* Lees-Edwards */
     uint64_t key;               /* of the random numbers of this step */
 };
 
@@ -102,6 +103,15 @@ static float kept_inside(const struct dsmc_axis *axis, int low, int high, float 
     if (axis->periodic) return x < 0 ? x + axis->length : x >= axis->length ? x - axis->length : x;
     if (low == BORDER_WALL && x < 0) return 0;
     return high == BORDER_WALL && x > axis->length ? axis->length : x;
+}
+
+/* What leaves at the top comes in at the bottom, slower by the speed of the image above. */
+static void shear(const struct sweep *sweep, struct dsmc_grain *p)
+{
+    const float side = p->y >= sweep->dsmc->ay.length ? 1 : p->y < 0 ? -1 : 0;
+    p->x -= side * sweep->image.way;
+    p->vx -= side * sweep->image.speed;
+    if (p->x < 0) p->x += sweep->dsmc->ax.length;
 }
 
 /* Collides grain i, at (x, y) before its move, with one of the full cell `to`: the normal is that
@@ -220,6 +230,7 @@ static void move_grain(struct sweep *sweep, uint32_t i, uint32_t cell)
     /* The speed grows with the whole step even where the way is cut. */
     p->vx += (sweep->dt - time) * sweep->gx;
     p->vy += (sweep->dt - time) * sweep->gy;
+    if (dsmc->effects & EFFECT_SHEAR) shear(sweep, p);
     p->x = kept_inside(&dsmc->ax, dsmc->scene->left, dsmc->scene->right, p->x);
     p->y = kept_inside(&dsmc->ay, dsmc->scene->bottom, dsmc->scene->top, p->y);
     uint32_t to = cell_at(dsmc, p->x, p->y);
@@ -255,6 +266,7 @@ void dsmc_heap_sweep(struct dsmc *dsmc)
         .dsmc = dsmc, .gx = (float)g[0], .gy = (float)g[1], .dt = (float)dsmc->dt,
         .way_max = way_max / fmaxf(dsmc->ax.per, dsmc->ay.per),
         .slow2 = (float)(slow * slow * weight * d), .roll = (float)sqrt(weight * d),
+        .image = dsmc_image(dsmc),
         .down = g[1] < 0 ? -1 : g[1] > 0 ? 1 : 0, .nx = dsmc->ax.cells, .ny = dsmc->ay.cells};
     for (uint32_t c = 0; c < dsmc->cells; c++) {
         dsmc->load[c] = (uint16_t)(dsmc->first[c + 1] - dsmc->first[c]);

@@ -123,7 +123,7 @@ struct flight {
     vector4 fall;               /* g dt^2/2 and g dt */
     vector4 below, above, by;   /* periodic: what lies below or above comes back by a length */
     vector4 low, high;          /* solid borders: never beyond */
-    float   shear_speed, shear_way;     /* Lees-Edwards: of the box's image above */
+    struct dsmc_image image;    /* Lees-Edwards */
     float   stride2;            /* farther than that in a step: look at the walls on the way */
 };
 
@@ -149,10 +149,7 @@ static struct flight flight_of(const struct dsmc *dsmc)
         if (lows[k] == BORDER_WALL) f.low[k] = 0;
         if (highs[k] == BORDER_WALL) f.high[k] = lengths[k];
     }
-    const double width = (double)dsmc->ax.length, height = (double)dsmc->ay.length;
-    const double shear = dsmc->settings.shear_rate * height;
-    f.shear_speed = (float)shear;
-    f.shear_way = (float)fmod(shear * (dsmc_time(dsmc) + dt), width);
+    f.image = dsmc_image(dsmc);
     f.stride2 = dsmc->walls.stride * dsmc->walls.stride;
     return f;
 }
@@ -170,8 +167,8 @@ FORCE_INLINE vector4 sheared(const struct flight *f, vector4 p)
 {
     const float side = p[1] >= f->above[1] ? 1 : p[1] < 0 ? -1 : 0;
     if (side == 0) return p;
-    p[0] -= side * f->shear_way;
-    p[2] -= side * f->shear_speed;
+    p[0] -= side * f->image.way;
+    p[2] -= side * f->image.speed;
     if (p[0] < 0) p[0] += f->above[0];
     return p;
 }
@@ -253,7 +250,7 @@ LOOPS(X)
 
 static void fly_block(struct dsmc *dsmc, const struct flight *f, struct run run, uint32_t *places)
 {
-    const bool walls = dsmc->walls.first, shear = f->shear_speed != 0;
+    const bool walls = dsmc->walls.first, shear = f->image.speed != 0;
     if (walls) (shear ? fly_both : fly_walls)(dsmc, f, run, places);
     else if (shear) fly_shear(dsmc, f, run, places);
     else if (dsmc->ax.periodic && dsmc->ay.periodic) fly_free(dsmc, f, run, places);

@@ -4,6 +4,8 @@
  */
 #include "model/dsmc/dsmc_settings.h"
 
+#include "model/speed.h"
+
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -29,8 +31,6 @@ static const struct key keys[] = {
     {"reach", KEY_RANGE, AT(reach), "2", 1, 16, "1", NULL,
      "hsmc: a grain rolls if it gets lower within so many columns (drawn for each grain); the "
      "slope of a heap is about 0.9 / reach"},
-    {"shear_rate", KEY_REAL, AT(shear_rate), "0", NAN, NAN, "1/time", NULL,
-     "Lees-Edwards borders at bottom and top, du_x/dy; needs a periodic bottom"},
 };
 
 const struct key_group dsmc_settings_group = {
@@ -51,29 +51,6 @@ double dsmc_settings_fraction(const struct scene *scene)
     return area / (box_width(scene) * box_height(scene));
 }
 
-static double speed_to_expect(const struct scene *scene, const struct dsmc_settings *settings)
-{
-    double speed = 0;
-    for (uint32_t k = 0; k < scene->placement_count; k++) {
-        const struct placement *p = &scene->placements[k];
-        const double thermal = isfinite(p->temperature) ? 4 * sqrt(2 * p->temperature) : 0;
-        speed = fmax(speed, hypot(p->velocity[0], p->velocity[1]) + thermal);
-    }
-    for (uint32_t k = 0; k < scene->source_count; k++) {
-        speed = fmax(speed, hypot(scene->sources[k].velocity[0], scene->sources[k].velocity[1]));
-    }
-    double wall_speed = 0;
-    for (uint32_t k = 0; k < scene->wall_count; k++) {
-        const struct wall *w = &scene->walls[k];
-        wall_speed = fmax(wall_speed, hypot(w->vx, w->vy) + fabs(w->surface_speed)
-            + 2 * M_PI * w->frequency * hypot(w->amplitude_x, w->amplitude_y));
-    }
-    const double fall2 = 2 * fabs(scene->gravity[0]) * box_width(scene)
-                       + 2 * fabs(scene->gravity[1]) * box_height(scene);
-    const double shear = 0.5 * fabs(settings->shear_rate) * box_height(scene);
-    return sqrt(speed * speed + fall2) + wall_speed + shear;
-}
-
 /* Half of a mean free path, 1 / (2 sqrt(2) n d chi), but two diameters or more (001 2.4). */
 static double cell_to_choose(const struct scene *scene, const struct dsmc_settings *settings)
 {
@@ -92,7 +69,7 @@ struct dsmc_settings dsmc_settings_completed(const struct scene *scene)
     struct dsmc_settings s = {.cell = NAN, .dt = NAN, .speed = NAN, .weight = 1, .reach = {2, 2}};
     const struct dsmc_settings *given = scene_settings(scene, "dsmc");
     if (given) s = *given;
-    if (isnan(s.speed)) s.speed = speed_to_expect(scene, &s);
+    if (isnan(s.speed)) s.speed = speed_greatest(scene);
     if (!(s.speed > 0)) s.speed = scene->radius_mean > 0 ? scene->radius_mean : 1;
     if (isnan(s.cell)) s.cell = cell_to_choose(scene, &s);
     if (isnan(s.dt)) {
@@ -214,12 +191,5 @@ void dsmc_settings_resolve(struct scene *scene, struct findings *findings)
     if (scene->effects & EFFECT_POLYDISPERSE) {
         findings_tell(findings, scene, FINDING_WARNING, "grains", "the grains of dsmc are all "
             "alike; the mean radius %g stands for all", scene->radius_mean);
-    }
-    if (s.shear_rate == 0) return;
-    scene->effects |= EFFECT_SHEAR;
-    if (scene->bottom != BORDER_PERIODIC || s.method == DSMC_HSMC) {
-        findings_tell(findings, scene, FINDING_ERROR, "dsmc.shear_rate", "Lees-Edwards borders "
-            "need bottom = top = \"periodic\" and the method plain or dense; between plates, move "
-            "walls instead");
     }
 }

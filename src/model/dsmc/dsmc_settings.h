@@ -19,7 +19,6 @@ struct dsmc_settings {
     uint32_t weight;            /* simulated particles for each grain */
     double   tangential;        /* beta0 of grains with friction */
     double   reach[2];          /* hsmc: columns within which a grain can roll down */
-    double   shear_rate;        /* Lees-Edwards, du_x/dy */
 };
 
 extern const struct key_group dsmc_settings_group;

@@ -11,6 +11,7 @@
 #include "model/lga/lga_bits.h"
 
 #include "model/model.h"
+#include "model/speed.h"
 
 #include <assert.h>
 #include <math.h>
@@ -68,21 +69,6 @@ static const struct key_group group = {
 
 /* --- what the scene leaves open --- */
 
-static double speed_at_start(const struct scene *scene)
-{
-    double most = 0;
-    for (uint32_t k = 0; k < scene->placement_count; k++) {
-        const struct placement *p = &scene->placements[k];
-        const double t = isfinite(p->temperature) ? p->temperature : 0;
-        most = fmax(most, sqrt(p->velocity[0] * p->velocity[0] + p->velocity[1] * p->velocity[1]
-                               + 2 * t));
-    }
-    for (uint32_t k = 0; k < scene->source_count; k++) {
-        most = fmax(most, hypot(scene->sources[k].velocity[0], scene->sources[k].velocity[1]));
-    }
-    return most > 0 ? most : 1;
-}
-
 static double diameters_a_node(const struct lga_settings *s)
 {
     return s->method == LGA_GMLG ? SQRT7 : 1;
@@ -116,7 +102,8 @@ static struct lga_settings completed(const struct scene *scene)
         }
         const double height = scene->box[3] - scene->box[1];
         const double fall = sqrt(0.5 * gravity * height);       /* mean speed from top to bottom */
-        s.tick = s.spacing / (gravity > 0 ? fall : speed_at_start(scene));
+        const double start = speed_at_start(scene, 1);
+        s.tick = s.spacing / (gravity > 0 ? fall : start > 0 ? start : 1);
     }
     if (!isfinite(s.k)) s.k = inelastic_share(scene);
     if (!isfinite(s.pw)) s.pw = s.k;
@@ -410,7 +397,7 @@ static void lga_archive(void *state, struct archive *archive)
     double tick = lga->tick;
     if (lga->bits) {
         archive_array(archive, "lga.planes", lga->bits->planes,
-                      (size_t)lga->lattice.rows * LGA_PLANES * lga->bits->words);
+                      (size_t)lga->lattice.rows * lga->bits->depth * lga->bits->words);
     } else {
         archive_array(archive, "lga.moving", lga->moving, lga->sites);
         archive_array(archive, "lga.rest", lga->rest, lga->sites);

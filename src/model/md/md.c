@@ -9,6 +9,7 @@
 #include "model/md/md_pairs.h"
 #include "model/md/md_step.h"
 #include "model/md/md_walls.h"
+#include "model/stepping.h"
 
 #include <math.h>
 #include <omp.h>
@@ -16,21 +17,6 @@
 #include <string.h>
 
 static const double skin_default = 0.3;         /* of the largest radius */
-
-/* Grains that there may be at once. */
-static uint32_t capacity(const struct scene *scene)
-{
-    if (scene->count_max > 0) return scene->count_max;
-    if (scene->source_count == 0) return scene->placed.count > 0 ? scene->placed.count : 1;
-    /* Densely packed, a box holds no more than this. */
-    const double area = (scene->box[2] - scene->box[0]) * (scene->box[3] - scene->box[1]);
-    const double full = area / (M_PI * scene->radius_mean * scene->radius_mean);
-    double given = scene->placed.count;
-    for (uint32_t s = 0; s < scene->source_count; s++) {
-        given += scene->sources[s].count > 0 ? (double)scene->sources[s].count : (double)INFINITY;
-    }
-    return (uint32_t)fmin(fmin(given, scene->placed.count + full) + 1, 4e8);
-}
 
 static void choose_law(struct md *md)
 {
@@ -116,12 +102,10 @@ static void *md_create(const struct scene *scene, struct error *error)
     md->settings = scene_settings(scene, "md");
     md->effects = scene->effects;
     md->dt = md->settings->dt;
-    md->count_max = capacity(scene);
-    if (md->count_max < scene->placed.count) md->count_max = scene->placed.count;
+    md->count_max = stepping_room(scene);
     md->thread_count = (uint32_t)omp_get_max_threads();
     md->law.spring = md->effects & EFFECT_STATIC_FRICTION;
-    md->window_length = isfinite(scene->measure.collision_window) ? scene->measure.collision_window
-                      : scene->output.frames > 0 ? scene->output.frames : 100 * md->dt;
+    md->window_length = stepping_window(scene, md->dt);
     md->stale = true;
     choose_lengths(md);
     if (!allocate(md)) {
@@ -208,15 +192,9 @@ static void archive_list(struct md *md, struct archive *archive)
 
 static void archive_time(struct md *md, struct archive *archive)
 {
-    double dt = md->dt;
-    archive_value(archive, "md.dt", &dt);
-    archive_value(archive, "md.epoch", &md->epoch);
-    archive_value(archive, "md.steps", &md->steps);
-    archive_value(archive, "md.steps_here", &md->steps_here);
-    if (dt == md->dt) return;
-    md->epoch += (double)md->steps_here * dt;
-    md->steps_here = 0;
-    md_step_rescale(md, dt);
+    const struct stepping_clock clock = {&md->epoch, &md->steps, &md->steps_here};
+    const double dt = stepping_archive(archive, "md", md->dt, clock);
+    if (dt != md->dt) md_step_rescale(md, dt);
 }
 
 static void md_archive(void *state, struct archive *archive)
@@ -261,7 +239,7 @@ static uint64_t md_memory(const struct scene *scene)
     const uint64_t grain = 2 * (sizeof(struct grain) + sizeof(struct half)) + 4 * sizeof(uint32_t);
     const uint64_t links = 2 * sizeof(struct link) + sizeof(struct push) / 2 + 6 + spring;
     const uint64_t walls = scene->wall_count > 0 ? 8 * sizeof(struct wall_link) : 0;
-    return (grain + 10 * links + walls) * capacity(scene);
+    return (grain + 10 * links + walls) * stepping_room(scene);
 }
 
 const struct model model_md = {

@@ -6,6 +6,8 @@
  */
 #include "model/md/md_flow.h"
 
+#include "model/stepping.h"
+
 #include <math.h>
 
 enum { RETRY_STEPS = 20 };      /* a grain without room tries again so much later */
@@ -24,15 +26,7 @@ bool md_flow_due(const struct md *md)
 static bool has_left(struct md *md, const struct grain *g, double t)
 {
     const struct scene *scene = md->scene;
-    const double *box = scene->box, far = 2 * g->radius;
-    if ((scene->left == BORDER_OPEN && g->x < box[0] - far)
-        || (scene->right == BORDER_OPEN && g->x > box[2] + far)
-        || (scene->bottom == BORDER_OPEN && g->y < box[1] - far)
-        || (scene->top == BORDER_OPEN && g->y > box[3] + far)) return true;
-    for (uint32_t k = 0; k < scene->sink_count; k++) {
-        const double *r = scene->sinks[k].region;
-        if (g->x >= r[0] && g->y >= r[1] && g->x <= r[2] && g->y <= r[3]) return true;
-    }
+    if (stepping_left(scene, g->x, g->y, g->radius)) return true;
     if (scene->screen_count == 0) return false;
     const struct species *species = &scene->species[g->species];
     return tally_cross(&md->tally, scene, t, g->x, g->y, g->ux, g->uy, g->rim / g->radius,
@@ -42,6 +36,7 @@ static bool has_left(struct md *md, const struct grain *g, double t)
 static void let_out(struct md *md)
 {
     const double t = md_time(md);
+    if (!(md->effects & (EFFECT_OUTFLOW | EFFECT_SCREEN))) return;
     for (uint32_t i = 0; i < md->count; i++) {
         struct grain *g = &md->grains[i];
         if (!has_left(md, g, t)) continue;

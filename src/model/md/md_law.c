@@ -1,6 +1,7 @@
 /* md_law.c - see md_law.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/md/md_law.h"
 
+#include "model/speed.h"
 #include "scene/resolve.h"
 
 #include <math.h>
@@ -163,7 +164,7 @@ static void set_tangential(struct md_pair_law *pair, const struct md_settings *s
 void md_law_pairs(const struct scene *scene, const struct md_settings *settings,
                   struct md_pair_law *pairs)
 {
-    const double speed = isfinite(settings->speed) ? settings->speed : md_settings_speed(scene);
+    const double speed = isfinite(settings->speed) ? settings->speed : speed_greatest(scene);
     for (uint32_t a = 0; a < scene->species_count; a++) {
         for (uint32_t b = 0; b < scene->species_count; b++) {
             const struct species *first = &scene->species[a], *second = &scene->species[b];

@@ -3,6 +3,7 @@
 #include "model/md/md_settings.h"
 
 #include "model/md/md_law.h"
+#include "model/speed.h"
 #include "scene/resolve.h"
 
 #include <math.h>
@@ -45,32 +46,6 @@ static const struct { double chosen, safe, least; } steps_per_contact[] = {
     [MD_VERLET] = {25, 8, 4},
     [MD_GEAR]   = {50, 20, 10},
 };
-
-double md_settings_speed(const struct scene *scene)
-{
-    double speed = 0;
-    for (uint32_t k = 0; k < scene->placed.count; k++) {
-        speed = fmax(speed, hypot(scene->placed.vx[k], scene->placed.vy[k]));
-    }
-    for (uint32_t k = 0; k < scene->placement_count; k++) {
-        const struct placement *p = &scene->placements[k];
-        const double thermal = isfinite(p->temperature) ? 4 * sqrt(2 * p->temperature) : 0;
-        speed = fmax(speed, hypot(p->velocity[0], p->velocity[1]) + thermal);
-    }
-    for (uint32_t k = 0; k < scene->source_count; k++) {
-        speed = fmax(speed, hypot(scene->sources[k].velocity[0], scene->sources[k].velocity[1]));
-    }
-    double wall_speed = 0;
-    for (uint32_t k = 0; k < scene->wall_count; k++) {
-        const struct wall *w = &scene->walls[k];
-        wall_speed = fmax(wall_speed, hypot(w->vx, w->vy) + fabs(w->surface_speed)
-            + 2 * M_PI * w->frequency * hypot(w->amplitude_x, w->amplitude_y));
-    }
-    /* A fall through the whole box: twice the depth times gravity, each axis on its own. */
-    const double fall2 = 2 * fabs(scene->gravity[0]) * (scene->box[2] - scene->box[0])
-                       + 2 * fabs(scene->gravity[1]) * (scene->box[3] - scene->box[1]);
-    return sqrt(speed * speed + fall2) + wall_speed;
-}
 
 /* Weight of the column that rests on one grain, as if all grains lay at the bottom. */
 static double static_load(const struct scene *scene, const struct species *s, double radius)
@@ -183,7 +158,7 @@ void md_settings_resolve(struct scene *scene, struct findings *findings)
 {
     struct md_settings *settings = scene_settings(scene, "md");
     if (!settings || scene->species_count == 0) return;
-    if (isnan(settings->speed)) settings->speed = md_settings_speed(scene);
+    if (isnan(settings->speed)) settings->speed = speed_greatest(scene);
     if (!(settings->speed > 0)) settings->speed = scene->radius_max > 0 ? scene->radius_max : 1;
     complete_species(scene, settings, findings);
     complete_tangential(scene, settings, findings);

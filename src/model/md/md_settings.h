@@ -29,8 +29,4 @@ extern const struct key_group md_settings_group;
 /* As struct model's resolve. */
 void md_settings_resolve(struct scene *scene, struct findings *findings);
 
-/* The greatest speed that the scene lets expect: of placed and entering grains and of walls, and
- * a free fall through the whole box. */
-double md_settings_speed(const struct scene *scene);
-
 #endif
