@@ -167,6 +167,33 @@ struct output {
     int    png_level;           /* zlib level */
 };
 
+enum stress_end { STRESS_REACHED, STRESS_REFUSED, STRESS_STOPPED };
+
+/* `stress`: what must hold while this scene runs, for the command of the same name. */
+struct stress {
+    struct key_texts models;    /* "MODEL KEY=VALUE ...", one run each; none: it is no case */
+    bool   slow;                /* takes longer than a few seconds */
+    int    ends;                /* enum stress_end */
+    char   because[KEY_TEXT_MAX];       /* words in the reason for a refusal or stop */
+    bool   mass;                /* grains and mass are kept, but for what enters and leaves */
+    double momentum;            /* changes at most by this share of sqrt(2 M K) at the start */
+    double energy_rises;        /* above its least value, as a share of its own scale */
+    double energy_changes;      /* from its first value, as a share of its own scale */
+    double overlap;             /* of grains with grains and walls, as a share of a radius */
+    double within[4];           /* all centres stay in this rectangle */
+    double grains[2];           /* at the end, at least and at most */
+    double energy_left[2];      /* kinetic energy at the end as a share of that at the start */
+    double travel[2];           /* mean way from where they began to the end, in mean diameters */
+    double collisions;          /* at least so many */
+    double since;               /* changes, shares and ways are measured from this time on */
+    double work;                /* at most so many steps, events or ticks */
+    double seconds;             /* of wall time, after which it has failed */
+    uint32_t looks;             /* how often everything is compared on the way */
+    struct key_texts agrees_with;       /* keys of a second run that must end alike */
+    double positions;           /* may differ at most by so many mean diameters (box to box) */
+    double energies;            /* kinetic ones may differ at most by this share */
+};
+
 /* Grains at the start, placed once; every model begins from the same ones. */
 struct placed {
     uint32_t  count;
@@ -203,6 +230,7 @@ struct scene {
     struct view    view;
     struct measure measure;
     struct output  output;
+    struct stress  stress;
 
     /* Derived: */
     effects_t effects;
