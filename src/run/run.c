@@ -14,6 +14,7 @@
 #include "run/look.h"
 #include "run/manifest.h"
 #include "run/writer.h"
+#include "scene/place_file.h"
 
 #include <errno.h>
 #include <math.h>
@@ -70,6 +71,41 @@ static bool hash_file(const char *path, uint64_t *hash, struct error *error)
     return true;
 }
 
+/* The files that placements read come into the run's directory, so that it stands on its own. */
+static bool copy_files(struct run *run, struct scene *scene)
+{
+    for (uint32_t k = 0; k < scene->placement_count; k++) {
+        struct placement *placement = &scene->placements[k];
+        char from[FILE_PATH_MAX], name[40], to[FILE_PATH_MAX];
+        if (placement->kind != PLACEMENT_FILE) continue;
+        place_file_path(run->scene, placement, from, sizeof from);
+        snprintf(name, sizeof name, "placement%u.txt", k);
+        folder_path(to, run->directory, "%s", name);
+        snprintf(placement->file, sizeof placement->file, "%s", name);
+        if (run->request->resume || strcmp(from, to) == 0) continue;    /* it is there already */
+        size_t size;
+        void *bytes = file_load(from, SIZE_MAX, &size, run->error);
+        const bool done = bytes && file_save(to, bytes, size, run->error);
+        free(bytes);
+        if (!done) return false;
+    }
+    return true;
+}
+
+/* The scene as it is kept in the run's directory, with the names that its files have there. */
+static bool write_scene(struct run *run, const char *path)
+{
+    struct scene kept = *run->scene;
+    kept.placements = calloc(kept.placement_count + 1, sizeof *kept.placements);
+    if (!kept.placements) return error_set(run->error, "not enough memory for a run");
+    for (uint32_t k = 0; k < kept.placement_count; k++) {
+        kept.placements[k] = run->scene->placements[k];
+    }
+    const bool done = copy_files(run, &kept) && scene_write(&kept, path, run->error);
+    free(kept.placements);
+    return done;
+}
+
 /* Writes the resolved scene; a run that is continued must be of the same one. */
 static bool settle_scene(struct run *run)
 {
@@ -78,7 +114,7 @@ static bool settle_scene(struct run *run)
     folder_path(fresh, run->directory, "scene.cfg.new");
     uint64_t old = 0;
     if (run->request->resume && !hash_file(path, &old, run->error)) return false;
-    if (!scene_write(run->scene, fresh, run->error)) return false;
+    if (!write_scene(run, fresh)) return false;
     bool done = hash_file(fresh, &run->scene_hash, run->error);
     if (done && run->request->resume && old != run->scene_hash) {
         done = error_set_code(run->error, EXIT_USAGE, "%s: this run was made from another scene or "
