@@ -220,8 +220,8 @@ static bool read_atoms(struct reader *reader, const char *style, unsigned long w
             const uint32_t words = count_words(line);
             const bool sphere = strstr(style, "sphere") || words == 7 || words == 10;
             if (!sphere && words != 5 && words != 8) {
-                return complain(reader, "this style of atoms is not known; use atom_style sphere or "
-                                "atomic");
+                return complain(reader, "this style of atoms is not known; use atom_style "
+                                "sphere or atomic");
             }
             read_names(reader, sphere ? "id type diameter density x y z" : "id type x y z");
         }

@@ -95,8 +95,8 @@ static bool place_row(const struct filler *filler, uint32_t k, uint32_t *overlap
     const double y = fold(row[GRAINFILE_y], box[1], box[3], placer->wraps_y);
     const struct region region = placer_region(placer, filler->placement);
     if (!placer_region_holds(&region, x, y, 0)) {
-        tell(filler, FINDING_ERROR, k, "lies outside of the placement's region (without one: of the "
-             "box)");
+        tell(filler, FINDING_ERROR, k, "lies outside of the placement's region (without one: "
+             "of the box)");
         return true;
     }
     /* Soft grains overlap a little where they press on each other; more than this breaks a run. */
