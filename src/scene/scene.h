@@ -38,12 +38,14 @@ struct species {
     int    inertia;             /* enum inertia: I = q m R^2, q = 1/2 or 2/5 */
 };
 
-enum placement_kind { PLACEMENT_TRIANGULAR, PLACEMENT_SQUARE, PLACEMENT_RANDOM };
+enum placement_kind { PLACEMENT_TRIANGULAR, PLACEMENT_SQUARE, PLACEMENT_RANDOM,
+                      PLACEMENT_FILE };
 
 /* One entry of `placements`: grains that are there at the start. */
 struct placement {
     char   grains[KEY_TEXT_MAX];        /* name of the species; "" = the first */
     int    kind;                /* enum placement_kind */
+    char   file[KEY_TEXT_MAX];  /* file: where the grains are listed, beside the scene */
     double region[4];           /* x0 y0 x1 y1; NANs: the box */
     struct key_reals outline;   /* or a polygon, x and y in turn */
     uint32_t count;             /* at most so many; 0: as many as fit */

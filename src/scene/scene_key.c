@@ -77,7 +77,10 @@ static const struct key species_keys[] = {
 
 static const struct key placement_keys[] = {
     TEXT(placement, grains, "", NULL, "name of the species; absent: the first"),
-    CHOICE(placement, kind, "triangular", "triangular|square|random", "how the grains lie"),
+    CHOICE(placement, kind, "triangular", "triangular|square|random|file",
+           "how the grains lie"),
+    TEXT(placement, file, "", NULL,
+         "file: CSV, LAMMPS dump or data file with the grains, looked for beside the scene"),
     BOX(placement, region, "nan", "where: a rectangle; absent: the box"),
     ROW(placement, outline, KEY_POINTS, "", -FAR, FAR, "length", NULL, "or where: a polygon"),
     COUNT(placement, count, "0", COUNT_HIGH, "at most so many, from below; 0: as many as fit"),
