@@ -22,12 +22,18 @@ struct figure_job;
     X("simplified-5",   cooling_three_models, "K(t) by ED, DSMC and HSMC against eq. 4")        \
     X("simplified-6",   clusters_factor_three, "S(k) by ED, DSMC and HSMC at several times")    \
     X("cooperative-2",  cooling_two_models,   "K(t) by ED and DSMC against eq. 18")             \
+    X("cooperative-3",  collisions_impact_times, "impact parameters P(b/d) at several times")   \
+    X("cooperative-4",  collisions_impact_restitutions, "P(b/d) for several r, dense")          \
+    X("cooperative-5",  collisions_stress,    "velocities and the stress's principal axes")     \
     X("cooperative-6",  clusters_pair,        "pair correlation g(r/d) by ED and DSMC")         \
     X("cooperative-7",  clusters_factor_two,  "S(k) by ED and DSMC at several times")           \
     X("cooperative-8",  clusters_restitutions, "K(C/N) and (Kx - Kz)/K for several r")          \
     X("cooperative-9",  clusters_cut_off,     "K(t) and K(C/N) for t_c = 1e-10 to 1e-3 s")      \
     X("cooperative-10", clusters_growth,      "K(t), C/N and elastic C/N of the large gas")     \
     X("cooperative-11", clusters_snapshots,   "snapshots coloured by collisions per time")      \
+    X("cooperative-12", collisions_frequency, "collision frequencies P(Nc) with fits")          \
+    X("cooperative-13", pipe_snapshots,       "an arch in a pipe, snapshots")                   \
+    X("cooperative-14", pipe_frequency,       "P(Nc) in the pipe before and with arches")       \
     X("stream-5",       stream_density,       "force against the density of the stream")        \
     X("stream-6",       stream_radius,        "force against the size of round and flat obstacles") \
     X("stream-9",       stream_speed,         "force against the speed of the stream")
