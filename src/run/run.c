@@ -299,7 +299,7 @@ static void fill_result(struct run *run, struct run_result *result)
     result->wall = wall_now(run);
     result->frames = run->writer.schedules[WRITER_FRAME].next;
     result->maps = run->writer.maps;
-    result->log_rows = run->writer.logbook.rows;
+    result->log_rows = run->writer.logbook.ledger.rows;
     result->range[0] = run->writer.draws ? run->writer.film.range[0] : NAN;
     result->range[1] = run->writer.draws ? run->writer.film.range[1] : NAN;
 }

@@ -29,6 +29,7 @@ static void set_schedules(struct writer *writer, const struct scene *scene)
     schedules[WRITER_FRAME].interval = output->frames;
     schedules[WRITER_LOG].interval = output->log;
     schedules[WRITER_MAP].interval = output->maps;
+    schedules[WRITER_TALLY].interval = output->tallies;
     const double *average = scene->measure.average;
     writer->averages = isfinite(average[0]) && isfinite(average[1]) && average[1] > average[0]
                     && (output->maps > 0 || scene->measure.fields.count > 0);
@@ -121,8 +122,14 @@ bool writer_open(struct writer *writer, const struct simulation *sim, const char
         && !mapper_open(&writer->mapper, scene, &scene->view, &scene->measure, formats, error)) {
         return false;
     }
+    if (writer->schedules[WRITER_MAP].interval > 0 && scene_effects(scene) & EFFECT_STRESS) {
+        writer->stress = stress_create(scene, error);
+        if (!writer->stress) return false;
+        stress_begin(writer->stress, simulation_tally(sim), 0);
+    }
     char path[FILE_PATH_MAX];
     return make_folders(writer, error)
+        && histograms_open(&writer->histograms, directory, sim, resume, error)
         && (!writer->keeps_grains || resume
             || dumps_begin(&writer->dumps, directory, 0, error))
         && (!(scene->output.log > 0)
@@ -140,7 +147,8 @@ bool writer_resume(struct writer *writer, struct error *error)
         if (!dumps_load(&writer->dumps, (uint32_t)k, &writer->grains, error)) return false;
         if (!film_gather(&writer->film, &writer->grains, error)) return false;
     }
-    return !writer->logbook.stream || logbook_resume(&writer->logbook, error);
+    return histograms_resume(&writer->histograms, error)
+        && (!writer->logbook.ledger.stream || ledger_resume(&writer->logbook.ledger, error));
 }
 
 static bool submit_frame(struct writer *writer, double time, uint64_t index, struct error *error)
@@ -183,13 +191,43 @@ static bool serve_map(struct writer *writer, uint64_t index, struct error *error
     char path[FILE_PATH_MAX], suffix[24] = "mean";
     folder_path(path, writer->directory, "maps");
     if (!look(writer, false, error)) return false;
+    const struct tally *tally = simulation_tally(writer->sim);
     if (!writer->averages) mapper_clear(&writer->mapper);
+    else if (writer->stress && !(writer->grains.time > schedule->from)) {
+        stress_begin(writer->stress, tally, writer->grains.time);
+    }
     mapper_add(&writer->mapper, &writer->grains);
+    if (writer->stress) stress_add(writer->stress, &writer->grains);
     if (writer->averages && isfinite(schedule_time(schedule))) return true;
     if (!writer->averages) snprintf(suffix, sizeof suffix, "%06llu", (unsigned long long)index);
     enter(writer, PART_files);
     writer->maps++;
-    return mapper_write(&writer->mapper, path, suffix, error);
+    bool done = mapper_write(&writer->mapper, path, suffix, error);
+    if (!writer->stress) return done;
+    for (int kind = 0; done && kind < STRESS_KINDS; kind++) {
+        struct field field;
+        done = stress_field(writer->stress, (enum stress_kind)kind, tally, writer->grains.time,
+                            &field, error)
+            && mapper_write_field(&writer->mapper, &field, path, suffix, error);
+        field_free(&field);
+    }
+    stress_begin(writer->stress, tally, writer->grains.time);
+    return done;
+}
+
+static bool serve_log(struct writer *writer, double wall, struct error *error)
+{
+    if (writer->logbook.stress && !look(writer, false, error)) return false;
+    enter(writer, PART_files);
+    return logbook_row(&writer->logbook, writer->sim, &writer->grains, wall, error);
+}
+
+static bool serve_histograms(struct writer *writer, struct error *error)
+{
+    if (!histograms_wanted(&writer->histograms)) return true;
+    if (!look(writer, false, error)) return false;
+    enter(writer, PART_files);
+    return histograms_block(&writer->histograms, writer->sim, &writer->grains, error);
 }
 
 bool writer_serve(struct writer *writer, double t, double wall, struct error *error)
@@ -202,9 +240,8 @@ bool writer_serve(struct writer *writer, double t, double wall, struct error *er
         const uint64_t index = schedule->next++;
         switch ((enum writer_event)e) {
         case WRITER_FRAME: done = serve_frame(writer, index, wall, error); break;
-        case WRITER_LOG:
-            done = logbook_row(&writer->logbook, writer->sim, wall, error);
-            break;
+        case WRITER_LOG: done = serve_log(writer, wall, error); break;
+        case WRITER_TALLY: done = serve_histograms(writer, error); break;
         case WRITER_MAP: done = serve_map(writer, index, error); break;
         case WRITER_EVENTS: break;
         }
@@ -215,8 +252,8 @@ bool writer_serve(struct writer *writer, double t, double wall, struct error *er
 
 bool writer_sync(struct writer *writer, struct error *error)
 {
-    return encoder_wait(writer->encoder, error)
-        && (!writer->logbook.stream || logbook_sync(&writer->logbook, error));
+    return encoder_wait(writer->encoder, error) && histograms_sync(&writer->histograms, error)
+        && (!writer->logbook.ledger.stream || ledger_sync(&writer->logbook.ledger, error));
 }
 
 /* Frames whose colours had to wait for the whole run. */
@@ -277,7 +314,8 @@ bool writer_finish(struct writer *writer, double wall, bool (*step)(void *, uint
     const enum part before = enter(writer, PART_files);
     bool done = true;
     if (writer->draws_later) done = draw_dumps(writer, wall, step, context, error);
-    done = done && writer_sync(writer, error) && save_screens(writer, error);
+    done = done && serve_histograms(writer, error) && writer_sync(writer, error)
+        && save_screens(writer, error);
     if (done && writer->movie_late) done = movie_from_frames(writer, error);
     if (done && writer->movie) {
         done = movie_commit(writer->movie, error);
@@ -297,7 +335,9 @@ void writer_archive(struct writer *writer, struct archive *archive)
     archive_array(archive, "run.next", next, WRITER_EVENTS);
     for (int e = 0; e < WRITER_EVENTS; e++) writer->schedules[e].next = next[e];
     archive_value(archive, "run.maps", &writer->maps);
-    if (writer->logbook.stream) logbook_archive(&writer->logbook, archive);
+    histograms_archive(&writer->histograms, archive);
+    if (writer->stress) stress_archive(writer->stress, archive);
+    if (writer->logbook.ledger.stream) logbook_archive(&writer->logbook, archive);
     if (writer->averages) map_archive(writer->mapper.map, archive);
 }
 
@@ -306,6 +346,8 @@ void writer_close(struct writer *writer)
     movie_abandon(writer->movie);
     encoder_destroy(writer->encoder);
     logbook_close(&writer->logbook);
+    histograms_close(&writer->histograms);
+    stress_destroy(writer->stress);
     film_close(&writer->film);
     mapper_close(&writer->mapper);
     dumps_close(&writer->dumps);

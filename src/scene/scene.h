@@ -243,6 +243,9 @@ bool scene_write(const struct scene *scene, const char *path, struct error *erro
 /* The scene in force at time t (phases). */
 const struct scene *scene_at(const struct scene *scene, double t);
 
+/* What any phase calls for. */
+effects_t scene_effects(const struct scene *scene);
+
 /* Mass and moment of inertia of a grain: m = density pi R^2, I = q m R^2. */
 double scene_mass(const struct species *species, double radius);
 double scene_inertia(const struct species *species, double radius);

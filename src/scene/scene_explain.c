@@ -198,10 +198,6 @@ static bool derive(const struct scene *scene, uint32_t bit, struct scene_reason 
     case EFFECT_BIT_OUTFLOW:      return outflow(scene, reason);
     case EFFECT_BIT_SCREEN:       return counted(scene, reason, "screens", scene->screen_count);
     case EFFECT_BIT_COLLISION_RATE: return collision_rate(scene, reason);
-    case EFFECT_BIT_SHEAR:
-        return scene->shear_rate != 0 ? on(scene, reason, "shear_rate", "shear_rate = %g",
-                                           scene->shear_rate)
-                                      : off(reason, "shear_rate is zero");
     case EFFECT_BIT_COLLISION_COUNT:
         return measured(scene, reason, "measure.collision_counts",
                         scene->measure.collision_counts);
@@ -210,6 +206,10 @@ static bool derive(const struct scene *scene, uint32_t bit, struct scene_reason 
                         scene->measure.impact_parameters);
     case EFFECT_BIT_STRESS:
         return measured(scene, reason, "measure.stress", scene->measure.stress);
+    case EFFECT_BIT_SHEAR:
+        return scene->shear_rate != 0 ? on(scene, reason, "shear_rate", "shear_rate = %g",
+                                           scene->shear_rate)
+                                      : off(reason, "shear_rate is zero");
     /* How friction is carried is a model's own: discs spin, springs remember, lattices do
      * neither. */
     case EFFECT_BIT_ROTATION:     return off(reason, "no torque turns a grain");
