@@ -273,7 +273,7 @@ bool collisions_stress(struct figure_job *job, struct error *error)
 bool collisions_frequency(struct figure_job *job, struct error *error)
 {
     /* C/N of the paper's curves: 8 (0.04 s, 0.93 t0), some tens, and beyond 183. */
-    static const double quick[] = {0.93, 5, 30, 200}, full[] = {0.93, 5, 30, 200, 2000};
+    static const double quick[] = {0.93, 5, 50, 2000}, full[] = {0.93, 5, 30, 200, 2000};
     const double *times = job->quick ? quick : full;
     const uint32_t count = job->quick ? 4 : 5;
     struct chart early, late;
