@@ -54,6 +54,21 @@ static bool look_at_gap(struct lab *lab, const struct flow *flow, struct gap *ga
     return true;
 }
 
+/* Mean speed of the grains in front of the obstacle, half a centimetre deep. */
+static double speed_before(const struct grains *g, const struct flow *flow)
+{
+    const double half = flow->radius / 2, depth = 0.5;
+    double count = 0, sum = 0;
+    for (uint32_t i = 0; i < g->count; i++) {
+        const double face = flow->flat ? 0 : sqrt(flow->radius * flow->radius
+                                                  - fmin(half * half, g->y[i] * g->y[i]));
+        if (fabs(g->y[i]) > half || g->x[i] > -face || g->x[i] < -face - depth) continue;
+        sum += hypot(g->vx[i], g->vy[i]);
+        count++;
+    }
+    return sum / count;
+}
+
 static bool snapshot(struct figure_job *job, bool flat, struct error *error)
 {
     struct lab lab = {0};
@@ -67,17 +82,13 @@ static bool snapshot(struct figure_job *job, bool flat, struct error *error)
     lab_set(&wish, "view.size=(900,750)");
     bool done = lab_open(&lab, job, &wish, error) && lab_go(&lab, flow.end, error);
     if (done) {
-        /* The cold corona: grains in front of the obstacle that have lost most of their speed. */
-        double near = 0, slow = 0;
-        const struct grains *g = &lab.footage.grains;
-        for (uint32_t i = 0; i < g->count; i++) {
-            if (g->x[i] > 0 || g->x[i] < -flow.radius - 0.3) continue;
-            if (fabs(g->y[i]) > flow.radius / 2) continue;
-            near++;
-            slow += hypot(g->vx[i], g->vy[i]) < 0.4 * flow.speed;
+        const double slow = speed_before(&lab.footage.grains, &flow) / flow.speed;
+        figure_hold(job, slow < 0.8, "grains before the obstacle are slowed down, to %.2f v", slow);
+        /* "Velocities are very small" there, in the paper; MODELS section 5: a corona at rest needs
+         * a damping a hundred times that of Table I. */
+        if (slow > 0.2) {
+            figure_miss(job, slow > 0.3, "the paper's corona almost at rest is not reproduced");
         }
-        figure_hold(job, slow > 0.5 * near, "a corona: %.0f %% of the grains before the obstacle are "
-                    "slower than 0.4 v", 100 * slow / near);
         done = strip_add(&strip, &lab, error) && picture(job, &strip, "", error);
     }
     strip_free(&strip);
