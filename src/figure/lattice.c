@@ -29,7 +29,7 @@ bool lattice_hourglass(struct figure_job *job, struct error *error)
     struct chart chart;
     struct heap heap = {0};
     char path[FILE_PATH_MAX];
-    const double neck = 8.4, until = job->quick ? 0.8 : 1.8;
+    const double neck = 8.4, until = job->quick ? 1.2 : 1.8;
     double t[SAMPLES], n[SAMPLES];
     lab_set(&wish, "model=lga");
     lab_set(&wish, "lga.k=0.5");
@@ -40,7 +40,7 @@ bool lattice_hourglass(struct figure_job *job, struct error *error)
     lab_set(&wish, "view.title=\"\"");
     /* So much sand that the lower heap does not reach the walls of the glass. */
     lab_set(&wish, "placements.[0].outline=((-0.5,8.6),(0.5,8.6),(2.2,11.545),(-2.2,11.545))");
-    if (!job->quick) lab_set(&wish, "grains.[0].radius=[0.008,0.012]");
+    lab_set(&wish, "grains.[0].radius=%s", job->quick ? "[0.016,0.024]" : "[0.008,0.012]");
     chart_begin(&chart, "Grains below the neck", "t [s]", "N");
     chart.key = "bottom right";
     strip_begin(&strip);
