@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "cli/cli.h"
+#include "run/exporter.h"
 
 #define SIMULATING OPTION_model, OPTION_method, OPTION_set, OPTION_seed, OPTION_until, OPTION_quick
 #define LOOK                                                                                    \
@@ -24,7 +25,7 @@ static const uint8_t map_options[] = {OPTION_output, OPTION_field, OPTION_time, 
     OPTION_as, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_size, OPTION_zoom, OPTION_theme,
     OPTION_colormap, OPTION_scale, OPTION_map_range, OPTION_title, SIMULATING, ALWAYS};
 static const uint8_t export_options[] = {OPTION_to, OPTION_output, OPTION_frame, OPTION_time,
-    OPTION_help, OPTION_COUNT};
+    OPTION_field, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_set, OPTION_help, OPTION_COUNT};
 static const uint8_t figure_options[] = {OPTION_small, OPTION_output, OPTION_plot_as, OPTION_json,
     ALWAYS};
 static const uint8_t check_options[] = {OPTION_explain, SIMULATING, OPTION_help, OPTION_COUNT};
@@ -35,6 +36,8 @@ static const uint8_t help_options[] = {OPTION_help, OPTION_COUNT};
 static const uint8_t version_options[] = {OPTION_json, OPTION_help, OPTION_COUNT};
 static const uint8_t bench_options[] = {OPTION_json, OPTION_output, OPTION_against, OPTION_threads,
     OPTION_help, OPTION_COUNT};
+static const uint8_t stress_options[] = {OPTION_quick, OPTION_json, OPTION_threads, OPTION_help,
+    OPTION_COUNT};
 
 const struct command cli_commands[] = {
     {"run", "SCENE", "simulates a scene and writes what its `output` asks for",
@@ -52,8 +55,8 @@ const struct command cli_commands[] = {
     {"live", "SCENE|RUN", "watches and steers a simulation while it runs",
      "--web prints an address for a browser; --commands FILE carries out a file of commands, and\n"
      "ends unless --web goes on.  A run goes on from its newest checkpoint.  The session is\n"
-     "written down in a directory, NAME-live unless -o says another; `sandreel replay` repeats it.\n"
-     "  docs/live.md lists the commands.\n",
+     "written down in a directory, NAME-live unless -o says another; `sandreel replay` repeats\n"
+     "it.  docs/live.md lists the commands.\n",
      live_options, 1, 1, cli_live},
     {"replay", "RUN", "repeats a live session from its log, to the same bytes",
      "Writes beside it, RUN-replay unless -o says another.  Exit code 4 if it comes to another\n"
@@ -63,8 +66,10 @@ const struct command cli_commands[] = {
      "A snapshot at -t (default: the end), or the mean over --average T1:T2.\n",
      map_options, 1, 1, cli_map},
     {"export", "RUN", "the grains of a run for other programs",
-     "--to csv: one table a frame, id,x,y,vx,vy,spin,radius,collision_rate,species.  Without\n"
-     "--frame or -t all frames are exported.\n",
+#define X(name, file, writer, doc) "  " #name ": " doc "\n"
+     EXPORTER_FORMATS(X)
+#undef X
+     "Without --frame or -t all frames are exported.\n",
      export_options, 1, 1, cli_export},
     {"figure", "[ID...]", "makes figures of the four papers again, with a verdict on each",
      "Without an ID it lists them.  ID may be `all`; several make one page, index.html.  All goes\n"
@@ -87,5 +92,9 @@ const struct command cli_commands[] = {
     {"bench", "[NAME...]", "repeatable timings of models, drawing, encoding and maps",
      "The median of several repeats, in processor seconds.  --against OLD.json prints ratios.\n",
      bench_options, 0, OPTIONS_OPERANDS_MAX, cli_bench},
+    {"stress", "[CASE...]", "runs the hard cases and tells what each of them held",
+     "A case is a scene with a group `stress`: built in as hard/NAME, or a file.  --quick leaves\n"
+     "out the slow ones.  Exit code 4 if one fails; it says which grain, where, and when.\n",
+     stress_options, 0, OPTIONS_OPERANDS_MAX, cli_stress},
     {0}
 };

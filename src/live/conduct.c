@@ -81,7 +81,7 @@ static bool conduct_checkpoint(struct session *session, const struct command_lin
     if (!session_file(session, line->word, ".checkpoint", path, error)) return false;
     archive_begin_save(&archive);
     const bool done = simulation_save(&session->sim, &archive, error)
-        && checkpoint_save_as(path, 0, run_scene_hash(session->timeline.text), &archive, error);
+        && checkpoint_save_as(path, 0, session->timeline.text, &archive, error);
     archive_end(&archive);
     if (done) session_say(session, "%s", path);
     return done;

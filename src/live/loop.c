@@ -12,7 +12,7 @@
 #include <string.h>
 #include <time.h>
 
-static const double status_seconds = 0.05;      /* totals are sums over all grains: not each piece */
+static const double status_seconds = 0.05;      /* totals are sums over all grains */
 static const double rate_seconds = 0.5;         /* over which the shown rate is taken */
 static const double lag_max = 0.2;              /* a brake forgets what the simulation is behind */
 static const double nap_seconds = 0.004;        /* while there is nothing to do */

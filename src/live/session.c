@@ -58,8 +58,7 @@ static bool load_start(struct session *session, const struct session_request *re
     if (!setup_is_run(request->path)) return true;
     folder_path(path, request->path, "checkpoint");
     if (!file_exists(path)) return true;
-    const uint64_t hash = run_scene_hash(session->timeline.text);
-    if (!checkpoint_load(path, hash, &bytes, &size, &turn, error)) return false;
+    if (!checkpoint_load(path, session->timeline.text, &bytes, &size, &turn, error)) return false;
     const bool done = load_bytes(session, bytes, size, error);
     free(bytes);
     return done;
@@ -81,7 +80,8 @@ static bool write_start(struct session *session, struct error *error)
 static bool write_scene(struct session *session, const char *status, struct error *error)
 {
     char path[FILE_PATH_MAX];
-    const struct manifest manifest = {session_scene(session), session->sim.model, status, 0, NULL};
+    const struct manifest manifest = {.scene = session_scene(session), .status = status,
+                                      .model = session->sim.model};
     return scene_write(session_scene(session),
                        folder_path(path, session->directory, "scene.cfg"), error)
         && manifest_save(&manifest, session->directory, error);

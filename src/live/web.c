@@ -7,7 +7,7 @@
  */
 #include "live/web.h"
 
-#ifdef HAVE_MICROHTTPD
+#ifdef SANDREEL_MICROHTTPD
 
 #include "base/asset.h"
 #include "live/command.h"

@@ -34,9 +34,13 @@ struct source_text {
 
 /* ---- the text ------------------------------------------------------------------------------ */
 
+/* "hourglass", "hard/cradle"; with another folder it is built in only if there is such a scene. */
 static bool names_builtin(const char *path)
 {
-    return !strchr(path, '/') && !strstr(path, ".cfg");
+    if (strstr(path, ".cfg")) return false;
+    char name[KEY_TEXT_MAX];
+    snprintf(name, sizeof name, "scenes/%.200s.cfg", path);
+    return !strchr(path, '/') || strncmp(path, "hard/", 5) == 0 || asset_find(name);
 }
 
 /* The built-in scene whose name is closest; NULL if none is close. */

@@ -38,12 +38,14 @@ struct species {
     int    inertia;             /* enum inertia: I = q m R^2, q = 1/2 or 2/5 */
 };
 
-enum placement_kind { PLACEMENT_TRIANGULAR, PLACEMENT_SQUARE, PLACEMENT_RANDOM };
+enum placement_kind { PLACEMENT_TRIANGULAR, PLACEMENT_SQUARE, PLACEMENT_RANDOM,
+                      PLACEMENT_FILE };
 
 /* One entry of `placements`: grains that are there at the start. */
 struct placement {
     char   grains[KEY_TEXT_MAX];        /* name of the species; "" = the first */
     int    kind;                /* enum placement_kind */
+    char   file[KEY_TEXT_MAX];  /* file: where the grains are listed, beside the scene */
     double region[4];           /* x0 y0 x1 y1; NANs: the box */
     struct key_reals outline;   /* or a polygon, x and y in turn */
     uint32_t count;             /* at most so many; 0: as many as fit */
@@ -157,7 +159,7 @@ struct measure {
 
 /* `output`: what a run writes and how often; 0 = never. */
 struct output {
-    double frames, log, maps, checkpoint;       /* intervals in simulated time */
+    double frames, log, maps, trajectory, checkpoint;   /* intervals in simulated time */
     double tallies;             /* ... of histograms; 0: one, of the whole run */
     double checkpoint_wall;     /* seconds of wall time */
     bool   dump;                /* grain states at each frame, .npy */
@@ -165,6 +167,33 @@ struct output {
     char   movie[KEY_TEXT_MAX]; /* a movie written while running, "movie.mp4"; "" = none */
     double frame_rate;          /* of movies, 1/s */
     int    png_level;           /* zlib level */
+};
+
+enum stress_end { STRESS_REACHED, STRESS_REFUSED, STRESS_STOPPED };
+
+/* `stress`: what must hold while this scene runs, for the command of the same name. */
+struct ordeal {
+    struct key_texts models;    /* "MODEL KEY=VALUE ...", one run each; none: it is no case */
+    bool   slow;                /* takes longer than a few seconds */
+    int    ends;                /* enum stress_end */
+    char   because[KEY_TEXT_MAX];       /* words in the reason for a refusal or stop */
+    bool   mass;                /* grains and mass are kept, but for what enters and leaves */
+    double momentum;            /* changes at most by this share of sqrt(2 M K) at the start */
+    double energy_rises;        /* above its least value, as a share of its own scale */
+    double energy_changes;      /* from its first value, as a share of its own scale */
+    double overlap;             /* of grains with grains and walls, as a share of a radius */
+    double within[4];           /* all centres stay in this rectangle */
+    double grains[2];           /* at the end, at least and at most */
+    double energy_left[2];      /* kinetic energy at the end as a share of that at the start */
+    double travel[2];           /* mean way from where they began to the end, in mean diameters */
+    double collisions;          /* at least so many */
+    double since;               /* changes, shares and ways are measured from this time on */
+    double work;                /* at most so many steps, events or ticks */
+    double seconds;             /* of wall time, after which it has failed */
+    uint32_t looks;             /* how often everything is compared on the way */
+    struct key_texts agrees_with;       /* keys of a second run that must end alike */
+    double positions;           /* may differ at most by so many mean diameters (box to box) */
+    double energies;            /* kinetic ones may differ at most by this share */
 };
 
 /* Grains at the start, placed once; every model begins from the same ones. */
@@ -203,6 +232,7 @@ struct scene {
     struct view    view;
     struct measure measure;
     struct output  output;
+    struct ordeal  stress;
 
     /* Derived: */
     effects_t effects;
