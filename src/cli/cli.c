@@ -28,6 +28,8 @@ static const uint8_t check_options[] = {OPTION_explain, SIMULATING, OPTION_help,
 static const uint8_t scenes_options[] = {OPTION_json, OPTION_help, OPTION_COUNT};
 static const uint8_t info_options[] = {OPTION_frame, OPTION_time, OPTION_grain, OPTION_at,
     OPTION_json, OPTION_set, OPTION_quick, OPTION_model, OPTION_help, OPTION_COUNT};
+static const uint8_t sweep_options[] = {OPTION_vary, OPTION_random, OPTION_repeats, OPTION_from,
+    OPTION_output, OPTION_shard, OPTION_resume, OPTION_force, OPTION_time_limit, SIMULATING, ALWAYS};
 static const uint8_t help_options[] = {OPTION_help, OPTION_COUNT};
 static const uint8_t version_options[] = {OPTION_json, OPTION_help, OPTION_COUNT};
 static const uint8_t bench_options[] = {OPTION_json, OPTION_output, OPTION_against, OPTION_threads,
@@ -67,6 +69,14 @@ const struct command cli_commands[] = {
     {"info", "SCENE|RUN", "tells about a run, a scene, or one grain and its contacts",
      "--grain ID or --at X,Y picks the grain, --frame N or -t T the moment.\n",
      info_options, 1, 1, cli_info},
+    {"sweep", "SCENE", "a parameter study: one run for each combination of values, as one table",
+     "--vary KEY=a:b:step is a grid, KEY=v,w,... a list, KEY=a:b (with --random N) is drawn N times.\n"
+     "Several --vary make all combinations.  Each point is a process of its own, -j of them at a\n"
+     "time, without pictures unless -s output.frames=... asks for them.  results.csv has a line for\n"
+     "each point: the last value of every column of its log, and the mean from --from on with its\n"
+     "error; failed.csv has those that failed.  --resume does what is missing.  Shards 1/N ... N/N of\n"
+     "one study may run on as many machines; `mpirun -n P sandreel sweep` shares it out over ranks.\n",
+     sweep_options, 1, 1, cli_sweep},
     {"help", "[COMMAND|KEY]", "explains a command or a key of scene files",
      "`sandreel help grains` lists the keys of a group, `help grains.restitution` explains one,\n"
      "`help keys` lists them all.\n",

@@ -21,6 +21,7 @@ int cli_scenes(const struct options *options);
 int cli_info(const struct options *options);
 int cli_help(const struct options *options);
 int cli_version(const struct options *options);
+int cli_sweep(const struct options *options);
 int cli_bench(const struct options *options);
 
 #endif
