@@ -21,7 +21,10 @@ int cli_scenes(const struct options *options);
 int cli_info(const struct options *options);
 int cli_help(const struct options *options);
 int cli_version(const struct options *options);
+int cli_completion(const struct options *options);
+int cli_manual(const struct options *options);
 int cli_sweep(const struct options *options);
 int cli_bench(const struct options *options);
+int cli_stress(const struct options *options);
 
 #endif

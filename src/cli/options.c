@@ -147,7 +147,8 @@ static bool take(struct options *options, int id, const char *value, struct erro
     }
     if (id == OPTION_vary) {
         if (options->vary_count == OPTIONS_VARIES_MAX) {
-            return error_set_code(error, EXIT_USAGE, "more than %d keys varied", OPTIONS_VARIES_MAX);
+            return error_set_code(error, EXIT_USAGE, "more than %d keys varied",
+                                  OPTIONS_VARIES_MAX);
         }
         options->varies[options->vary_count++] = value;
         return true;

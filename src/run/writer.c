@@ -30,8 +30,8 @@ static void set_schedules(struct writer *writer, const struct scene *scene)
     schedules[WRITER_FRAME].interval = output->frames;
     schedules[WRITER_LOG].interval = output->log;
     schedules[WRITER_MAP].interval = output->maps;
-    schedules[WRITER_TRAJECTORY].interval = output->trajectory;
     schedules[WRITER_TALLY].interval = output->tallies;
+    schedules[WRITER_TRAJECTORY].interval = output->trajectory;
     const double *average = scene->measure.average;
     writer->averages = isfinite(average[0]) && isfinite(average[1]) && average[1] > average[0]
                     && (output->maps > 0 || scene->measure.fields.count > 0);
@@ -286,9 +286,9 @@ bool writer_sync(struct writer *writer, struct error *error)
         char path[FILE_PATH_MAX];
         file_sync(folder_path(path, writer->directory, "%s", folders[k]));
     }
-    return (!writer->h5md || h5md_sync(writer->h5md, error))
-        && histograms_sync(&writer->histograms, error)
-        && (!writer->logbook.ledger.stream || ledger_sync(&writer->logbook.ledger, error));
+    return histograms_sync(&writer->histograms, error)
+        && (!writer->logbook.ledger.stream || ledger_sync(&writer->logbook.ledger, error))
+        && (!writer->h5md || h5md_sync(writer->h5md, error));
 }
 
 /* Frames whose colours had to wait for the whole run. */

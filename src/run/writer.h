@@ -15,15 +15,16 @@
 #include "run/dumps.h"
 #include "run/encoder.h"
 #include "run/film.h"
-#include "run/h5md.h"
 #include "run/histograms.h"
+#include "run/h5md.h"
 #include "run/logbook.h"
 #include "run/mapper.h"
 #include "run/movie.h"
 #include "run/parts.h"
 
-enum writer_event { WRITER_FRAME, WRITER_LOG, WRITER_MAP, WRITER_TALLY, WRITER_TRAJECTORY,
-                    WRITER_EVENTS };
+enum writer_event {
+    WRITER_FRAME, WRITER_LOG, WRITER_MAP, WRITER_TALLY, WRITER_TRAJECTORY, WRITER_EVENTS
+};
 
 struct schedule {
     double   interval;          /* 0: never */

@@ -458,6 +458,15 @@ static void check_phase(struct check check, const struct phase_entry *entry)
         WARNING("time", "the phase begins at %g, but the run ends at %g", entry->time,
                 scene->until);
     }
+    if (entry->push.count % PHASE_PUSH != 0) {
+        ERROR("push", "a push is five numbers (x, y, radius, vx, vy), or five for each of several; "
+              "these are %u", entry->push.count);
+    }
+    for (uint32_t k = 2; k < entry->push.count; k += PHASE_PUSH) {
+        if (entry->push.values[k] > 0) continue;
+        ERROR("push", "the radius of a push is its third number and must be greater than 0, not %g",
+              entry->push.values[k]);
+    }
     for (uint32_t k = 0; k < entry->set.count; k++) {
         const char *text = entry->set.texts[k];
         const size_t length = strcspn(text, ".=[ ");
