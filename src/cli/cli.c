@@ -17,6 +17,10 @@ static const uint8_t run_options[] = {OPTION_output, SIMULATING, OPTION_resume, 
 static const uint8_t frame_options[] = {OPTION_output, OPTION_time, LOOK, SIMULATING, ALWAYS};
 static const uint8_t movie_options[] = {OPTION_output, OPTION_side_by_side, OPTION_fps,
     OPTION_every, LOOK, SIMULATING, ALWAYS};
+static const uint8_t live_options[] = {OPTION_web, OPTION_commands, OPTION_output, OPTION_force, LOOK,
+    SIMULATING, ALWAYS};
+static const uint8_t replay_options[] = {OPTION_output, OPTION_force, OPTION_threads, OPTION_help,
+    OPTION_COUNT};
 static const uint8_t map_options[] = {OPTION_output, OPTION_field, OPTION_time, OPTION_average,
     OPTION_as, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_size, OPTION_zoom, OPTION_theme,
     OPTION_colormap, OPTION_scale, OPTION_map_range, OPTION_title, SIMULATING, ALWAYS};
@@ -51,6 +55,16 @@ const struct command cli_commands[] = {
      "-o NAME.mp4, .webm or .gif; ffmpeg must be installed.  --side-by-side puts several models\n"
      "(--model md,lga) or several scenes and runs into one picture; --size is that of one panel.\n",
      movie_options, 1, OPTIONS_OPERANDS_MAX, cli_movie},
+    {"live", "SCENE|RUN", "watches and steers a simulation while it runs",
+     "--web prints an address for a browser; --commands FILE carries out a file of commands, and\n"
+     "ends unless --web goes on.  A run goes on from its newest checkpoint.  The session is\n"
+     "written down in a directory, NAME-live unless -o says another; `sandreel replay` repeats\n"
+     "it.  docs/live.md lists the commands.\n",
+     live_options, 1, 1, cli_live},
+    {"replay", "RUN", "repeats a live session from its log, to the same bytes",
+     "Writes beside it, RUN-replay unless -o says another.  Exit code 4 if it comes to another\n"
+     "state.\n",
+     replay_options, 1, 1, cli_replay},
     {"map", "SCENE|RUN", "field maps: density, velocity, granular temperature, ...",
      "A snapshot at -t (default: the end), or the mean over --average T1:T2.\n",
      map_options, 1, 1, cli_map},

@@ -13,6 +13,8 @@ extern const struct command cli_commands[];
 int cli_run(const struct options *options);
 int cli_frame(const struct options *options);
 int cli_movie(const struct options *options);
+int cli_live(const struct options *options);
+int cli_replay(const struct options *options);
 int cli_map(const struct options *options);
 int cli_export(const struct options *options);
 int cli_figure(const struct options *options);

@@ -15,7 +15,8 @@
 #include <stdint.h>
 
 /* How the value of an option that sets a key is written there. */
-enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM_ON };
+enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM_ON,
+                   FORM_OPTIONAL };     /* sets no key; --NAME or --NAME=VALUE */
 
 /* X(id, "long", letter or 0, "VALUE" or NULL, "scene key" or NULL, form, "what it does") */
 #define OPTIONS(X)                                                                              \
@@ -92,6 +93,10 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(grain,     "grain",     0,   "ID",    NULL, FORM_PLAIN, "tells about one grain")          \
     X(at,        "at",        0,   "X,Y",   NULL, FORM_PLAIN,                                   \
       "tells about the grain nearest to a point")                                               \
+    X(commands,  "commands",  0,   "FILE",  NULL, FORM_PLAIN,                                   \
+      "carries out the commands of a file")                                                     \
+    X(web,       "web",       0,   "PORT",  NULL, FORM_OPTIONAL,                                \
+      "in a browser: prints an address of this machine alone; any free port if none is given")  \
     X(json,      "json",      0,   NULL,    NULL, FORM_PLAIN, "prints one JSON document")       \
     X(against,   "against",   0,   "OLD.json", NULL, FORM_PLAIN,                                \
       "prints ratios to an earlier bench")                                                      \
