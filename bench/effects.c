@@ -35,8 +35,8 @@ static const struct change { effects_t effect; const char *out, *in; } changes[]
                               "surface_speed=1.0;})"},
     {EFFECT_GATES, "", "walls=({shape=\"segment\";points=((50,50),(60,50));opens=1e6;})"},
     {EFFECT_OBSTACLE, "", "obstacles=({shape=\"disc\";center=(50,50);radius=2.0;})"},
-    {EFFECT_INFLOW, "sources=()", "sources=({position=(50,50);rate=1e-3;})"},
-    {EFFECT_OUTFLOW, "sinks=()", "sinks=({region=(50,50,50.1,50.1);})"},
+    {EFFECT_INFLOW, "sources=()", "sources=({position=(20,20);rate=1e-3;})"},
+    {EFFECT_OUTFLOW, "sinks=()", "sinks=({region=(80,80,80.1,80.1);})"},
     {EFFECT_SCREEN, "screens=()", "screens=({center=(50,50);radius=1e3;})"},
     {EFFECT_COLLISION_RATE, "measure.collisions=false;view.color=speed",
      "measure.collisions=true"},
@@ -99,6 +99,27 @@ static const struct change *change_of(effects_t effect)
     return NULL;
 }
 
+/* What the model chose for the whole scene stays as it is, or another time step or stiffness would
+ * be compared and not the effect. */
+static void pin_settings(struct keys *keys, const struct scene *scene, const struct model *model)
+{
+    const struct key_group *group = model->settings;
+    const char *settings = group ? scene_settings(scene, group->name) : NULL;
+    char text[KEY_LENGTH];
+    for (uint32_t k = 0; settings && k < group->count; k++) {
+        const struct key *key = &group->keys[k];
+        const double *value = (const double *)(settings + key->offset);
+        if (key->type != KEY_REAL || !isfinite(*value)) continue;
+        snprintf(text, sizeof text, "%s.%s=%.17g", group->name, key->name, *value);
+        add_key(keys, text);
+    }
+    for (uint32_t k = 0; k < scene->species_count; k++) {
+        if (!isfinite(scene->species[k].stiffness)) continue;
+        snprintf(text, sizeof text, "grains.[%u].stiffness=%.17g", k, scene->species[k].stiffness);
+        add_key(keys, text);
+    }
+}
+
 /* ---- a form of the scene that runs --------------------------------------------------------- */
 
 struct form {
@@ -117,7 +138,14 @@ static double heap_bytes(void)
 static bool form_open(struct form *form, const struct setup_request *request, struct error *error)
 {
     *form = (struct form){.best = INFINITY};
-    if (!setup_load(&form->setup, request, error)) return false;
+    if (!setup_load(&form->setup, request, error)) {
+        const struct findings *findings = form->setup.findings;
+        for (uint32_t k = 0; findings && k < findings->count && k < FINDINGS_MAX; k++) {
+            if (findings->list[k].kind != FINDING_ERROR) continue;
+            return error_set_code(error, EXIT_SCENE, "%s", findings->list[k].text);
+        }
+        return false;
+    }
     const double before = heap_bytes();
     if (!simulation_create(&form->sim, form->setup.model, form->setup.scene, error)) return false;
     form->bytes = heap_bytes() - before;
@@ -195,6 +223,7 @@ bool effects_measure(const struct setup_request *request, effects_t effect,
         snprintf(cost->why, sizeof cost->why, "part of the scene: without it nothing compares");
     } else if (done) {
         for (uint32_t k = 0; k < request->override_count; k++) add_key(keys, request->overrides[k]);
+        pin_settings(keys, with.setup.scene, with.setup.model);
         add_all(keys, change->out, with.setup.scene->species_count);
         struct setup_request other = *request;
         other.overrides = keys->list;
@@ -277,10 +306,18 @@ bool effects_bench(const struct model *model,
         add_all(keys, change->in, 1);
         struct error reason = {0};
         none.best = INFINITY;
-        if (!bench_one(model, effect_word(change->effect), keys, &none, &row, &reason)) continue;
+        done = bench_one(model, effect_word(change->effect), keys, &none, &row, &reason);
+        if (!done) {
+            *error = reason;
+            break;
+        }
         tell(context, &row);
         /* A sheared border is periodic, so it does not go together with walls. */
         if (change->effect != EFFECT_SHEAR) add_all(all, change->in, 1);
+    }
+    if (model->effects & EFFECT_MOVING_WALLS && model->effects & EFFECT_GATES) {
+        add_key(all, "walls=({shape=\"segment\";points=((50,50),(60,50));surface_speed=1.0;},"
+                     "{shape=\"segment\";points=((50,60),(60,60));opens=1e6;})");
     }
     none.best = INFINITY;
     done = done && bench_one(model, "all", all, &none, &row, error);
