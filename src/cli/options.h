@@ -73,7 +73,8 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(plot_as,   "as",        0,   "LIST",  NULL, FORM_PLAIN, "formats: png,svg,pdf,text")      \
     X(small,     "quick",     0,   NULL,    NULL, FORM_PLAIN,                                   \
       "reduced numbers: each figure within a minute")                                           \
-    X(to,        "to",        0,   "FORMAT", NULL, FORM_PLAIN, "csv, npy")                      \
+    X(to,        "to",        0,   "LIST",  NULL, FORM_PLAIN,                                   \
+      "formats: csv,npy,vtp,vti,lammps,extxyz,h5md; default: csv")                              \
     X(explain,   "explain",   0,   NULL,    NULL, FORM_PLAIN,                                   \
       "which effects are on, and which off")                                                    \
     X(effects,   "effects",   0,   NULL,    NULL, FORM_PLAIN,                                   \

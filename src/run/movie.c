@@ -72,9 +72,15 @@ static bool start(struct movie *movie, const struct format *format, double frame
     size_t count = 0;
     while (arguments[count]) count++;
     for (size_t k = 0; format->options[k]; k++) arguments[count++] = format->options[k];
-    arguments[count++] = "-f";
-    arguments[count++] = format->muxer;
-    arguments[count++] = movie->partial;
+    /* "file:", or a colon in the path would end the name of a protocol; bitexact, or a film gets
+     * numbers drawn by lot, and two runs differ. */
+    char output[sizeof movie->partial + 8];
+    snprintf(output, sizeof output, "file:%s", movie->partial);
+    const char *const ends_with[] = {"-fflags", "+bitexact", "-flags:v", "+bitexact", "-f",
+                                     format->muxer, output};
+    for (size_t k = 0; k < sizeof ends_with / sizeof *ends_with; k++) {
+        arguments[count++] = ends_with[k];
+    }
     return program_start(&movie->program, arguments, NULL, error);
 }
 
@@ -151,6 +157,7 @@ bool movie_commit(struct movie *movie, struct error *error)
 {
     bool done = program_finish(&movie->program);
     if (!done) complain(movie, error);
+    if (done) file_sync(movie->partial);
     if (done && rename(movie->partial, movie->path) != 0) {
         done = error_set(error, "%s: cannot name the movie: %s", movie->path, strerror(errno));
     }

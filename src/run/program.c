@@ -12,6 +12,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -32,6 +33,7 @@ bool program_is_there(const char *name)
 static void become(const char *directory, int input, int complaints, char *const *arguments)
 {
     setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);   /* whose run is killed, its film is of no use */
     signal(SIGPIPE, SIG_DFL);
     const int nothing = open("/dev/null", O_WRONLY);
     dup2(input, STDIN_FILENO);

@@ -285,7 +285,16 @@ struct scene *scene_load(const struct scene_request *request, struct findings *f
             placed = scene->placed.count;
             resolve_radii(scene);
         }
+        if (request->grains_of) {
+            scene->placed = request->grains_of->placed;
+            placed = scene->placed.count;
+            resolve_radii(scene);
+        }
         scene->count_max = resolve_count_max(scene, placed);
+        for (uint32_t k = 1; k < scene->phase_count; k++) {     /* one may bring a source */
+            const uint32_t needs = resolve_count_max(scene->phases[k], placed);
+            if (needs > scene->count_max) scene->count_max = needs;
+        }
         share_with_phases(scene);
     }
     free(source.owned);

@@ -38,12 +38,14 @@ struct species {
     int    inertia;             /* enum inertia: I = q m R^2, q = 1/2 or 2/5 */
 };
 
-enum placement_kind { PLACEMENT_TRIANGULAR, PLACEMENT_SQUARE, PLACEMENT_RANDOM };
+enum placement_kind { PLACEMENT_TRIANGULAR, PLACEMENT_SQUARE, PLACEMENT_RANDOM,
+                      PLACEMENT_FILE };
 
 /* One entry of `placements`: grains that are there at the start. */
 struct placement {
     char   grains[KEY_TEXT_MAX];        /* name of the species; "" = the first */
     int    kind;                /* enum placement_kind */
+    char   file[KEY_TEXT_MAX];  /* file: where the grains are listed, beside the scene */
     double region[4];           /* x0 y0 x1 y1; NANs: the box */
     struct key_reals outline;   /* or a polygon, x and y in turn */
     uint32_t count;             /* at most so many; 0: as many as fit */
@@ -101,7 +103,13 @@ struct screen {
 struct sink { double region[4]; };
 
 /* One entry of `phases`: keys that change at a time. */
-struct phase_entry { double time; struct key_texts set; };
+struct phase_entry {
+    double time;
+    struct key_texts set;
+    struct key_reals push;      /* x, y, radius, vx, vy of each push (model/impulse.h), in turn */
+};
+
+enum { PHASE_PUSH = 5 };        /* numbers of one push */
 
 enum color_by { COLOR_SPEED, COLOR_COLLISIONS, COLOR_SPIN, COLOR_SPECIES, COLOR_RADIUS,
                 COLOR_PRESSURE, COLOR_NONE };
@@ -152,7 +160,7 @@ struct measure {
 
 /* `output`: what a run writes and how often; 0 = never. */
 struct output {
-    double frames, log, maps, checkpoint;       /* intervals in simulated time */
+    double frames, log, maps, trajectory, checkpoint;   /* intervals in simulated time */
     double tallies;             /* ... of histograms; 0: one, of the whole run */
     double checkpoint_wall;     /* seconds of wall time */
     bool   dump;                /* grain states at each frame, .npy */
@@ -252,6 +260,8 @@ struct scene_request {
     const struct key_group *const *groups;      /* the models' settings */
     uint32_t    group_count;
     bool        place;          /* also place the grains (dense packings take time) */
+    const struct scene *grains_of;      /* or take over the grains that this scene has placed; it
+                                         * must outlive the new one.  NULL: none */
 };
 
 /* Reads, overrides, resolves, checks and places.  NULL if anything is wrong: then `findings` holds

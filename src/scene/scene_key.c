@@ -77,7 +77,10 @@ static const struct key species_keys[] = {
 
 static const struct key placement_keys[] = {
     TEXT(placement, grains, "", NULL, "name of the species; absent: the first"),
-    CHOICE(placement, kind, "triangular", "triangular|square|random", "how the grains lie"),
+    CHOICE(placement, kind, "triangular", "triangular|square|random|file",
+           "how the grains lie"),
+    TEXT(placement, file, "", NULL,
+         "file: CSV, LAMMPS dump or data file with the grains, looked for beside the scene"),
     BOX(placement, region, "nan", "where: a rectangle; absent: the box"),
     ROW(placement, outline, KEY_POINTS, "", -FAR, FAR, "length", NULL, "or where: a polygon"),
     COUNT(placement, count, "0", COUNT_HIGH, "at most so many, from below; 0: as many as fit"),
@@ -148,6 +151,8 @@ static const struct key sink_keys[] = {
 static const struct key phase_keys[] = {
     REAL(phase_entry, time, NULL, KEY_POSITIVE, FAR, "time", "when it begins"),
     TEXTS(phase_entry, set, "what changes, as \"KEY=VALUE\"; it stays for later phases"),
+    ROW(phase_entry, push, KEY_REALS, "", -FAR, FAR, "", NULL,
+        "x, y, radius, vx, vy: grains around a point gain a velocity; five more for another push"),
 };
 
 static const struct key view_keys[] = {
@@ -207,6 +212,8 @@ static const struct key output_keys[] = {
     REAL(output, frames, "0", 0, FAR, "time", "between pictures; 0: none"),
     REAL(output, log, "0", 0, FAR, "time", "between rows of log.csv; 0: none"),
     REAL(output, maps, "0", 0, FAR, "time", "between maps; 0: none"),
+    REAL(output, trajectory, "0", 0, FAR, "time",
+         "between frames of trajectory.h5 (H5MD, compressed); 0: none"),
     REAL(output, tallies, "0", 0, FAR, "time",
          "between histograms in impact.csv and collisions.csv; 0: one, of the whole run"),
     REAL(output, checkpoint, "0", 0, FAR, "time", "between checkpoints; 0: none"),
