@@ -88,6 +88,8 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
       "only every N-th point, from the I-th on")                                                \
     X(explain,   "explain",   0,   NULL,    NULL, FORM_PLAIN,                                   \
       "which effects are on, and which off")                                                    \
+    X(effects,   "effects",   0,   NULL,    NULL, FORM_PLAIN,                                   \
+      "time and bytes per grain with each effect alone, all, none")                             \
     X(frame,     "frame",     0,   "N",     NULL, FORM_PLAIN,                                   \
       "number of a frame; default: the last")                                                   \
     X(grain,     "grain",     0,   "ID",    NULL, FORM_PLAIN, "tells about one grain")          \
