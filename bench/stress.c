@@ -143,7 +143,7 @@ static void ask(struct stress_result *result, enum stress_check check, double lo
                                                   .worst = isnan(high) ? INFINITY : 0};
 }
 
-static void ask_all(struct stress_result *result, const struct stress *stress)
+static void ask_all(struct stress_result *result, const struct ordeal *stress)
 {
     const double none = NAN;
     /* Grains are whole; half of one is less than the least that can be missing. */
@@ -240,7 +240,7 @@ static enum advance advance_to(struct try *try, struct simulation *sim, double t
 /* The run broke: as it must, for the reason that it must give, naming a grain - or not. */
 static bool judge_stop(struct try *try, const char *reason)
 {
-    const struct stress *stress = &try->setup.scene->stress;
+    const struct ordeal *stress = &try->setup.scene->stress;
     if (stress->ends != STRESS_STOPPED) return fail(try, STRESS_CHECK_ends, "%.600s", reason);
     if (!strstr(reason, stress->because)) {
         return fail(try, STRESS_CHECK_ends, "stopped, but not because of '%.100s': %.400s",
@@ -376,7 +376,7 @@ static bool agree(struct try *try, const char *path)
 /* ---- one run ------------------------------------------------------------------------------- */
 
 /* The scene was refused: by an error that is expected, or not. */
-static bool judge_refusal(struct try *try, const struct stress *stress, const char *text)
+static bool judge_refusal(struct try *try, const struct ordeal *stress, const char *text)
 {
     if (stress->ends != STRESS_REFUSED) return fail(try, STRESS_CHECK_ends, "%.600s", text);
     return strstr(text, stress->because) || fail(try, STRESS_CHECK_ends,
@@ -394,7 +394,7 @@ static void find_tightest(struct stress_result *result)
     }
 }
 
-static bool carry_out(struct try *try, const char *path, const struct stress *asked)
+static bool carry_out(struct try *try, const char *path, const struct ordeal *asked)
 {
     const struct setup_request request = {.path = path, .overrides = try->overrides,
                                           .override_count = try->override_count, .place = true};
@@ -403,7 +403,7 @@ static bool carry_out(struct try *try, const char *path, const struct stress *as
         ask(try->result, STRESS_CHECK_ends, NAN, 0);
         return judge_refusal(try, asked, first_error(&try->setup, &reason));
     }
-    const struct stress *stress = &try->setup.scene->stress;
+    const struct ordeal *stress = &try->setup.scene->stress;
     ask_all(try->result, stress);
     if (!simulation_create(&try->sim, try->setup.model, try->setup.scene, &reason)) {
         return judge_refusal(try, stress, reason.text);

@@ -5,8 +5,8 @@
  * first thing that does not hold ends the run, with the grain, the place and the time.
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef STRESS_H
-#define STRESS_H
+#ifndef BENCH_STRESS_H
+#define BENCH_STRESS_H
 
 #include "base/error.h"
 

@@ -172,7 +172,7 @@ struct output {
 enum stress_end { STRESS_REACHED, STRESS_REFUSED, STRESS_STOPPED };
 
 /* `stress`: what must hold while this scene runs, for the command of the same name. */
-struct stress {
+struct ordeal {
     struct key_texts models;    /* "MODEL KEY=VALUE ...", one run each; none: it is no case */
     bool   slow;                /* takes longer than a few seconds */
     int    ends;                /* enum stress_end */
@@ -232,7 +232,7 @@ struct scene {
     struct view    view;
     struct measure measure;
     struct output  output;
-    struct stress  stress;
+    struct ordeal  stress;
 
     /* Derived: */
     effects_t effects;
