@@ -28,6 +28,8 @@ static const uint8_t export_options[] = {OPTION_to, OPTION_output, OPTION_frame,
     OPTION_field, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_set, OPTION_help, OPTION_COUNT};
 static const uint8_t figure_options[] = {OPTION_small, OPTION_output, OPTION_plot_as, OPTION_json,
     ALWAYS};
+static const uint8_t plot_options[] = {OPTION_of, OPTION_output, OPTION_plot_as, OPTION_time,
+    SIMULATING, ALWAYS};
 static const uint8_t check_options[] = {OPTION_explain, SIMULATING, OPTION_help, OPTION_COUNT};
 static const uint8_t scenes_options[] = {OPTION_json, OPTION_help, OPTION_COUNT};
 static const uint8_t info_options[] = {OPTION_frame, OPTION_time, OPTION_grain, OPTION_at,
@@ -79,6 +81,11 @@ const struct command cli_commands[] = {
      "into the directory figures unless -o says another: pictures, a table of every curve, and\n"
      "gnuplot's script.  Exit code 4 if a verdict is other than `agrees`.\n",
      figure_options, 0, OPTIONS_OPERANDS_MAX, cli_figure},
+    {"plot", "SCENE|RUN", "plots what a run measured, as PNG, SVG, PDF or in the terminal",
+     "--of energy, contacts, flux, force, stress, impact, frequency, scattering need the tables of a\n"
+     "run; --of anisotropy, structure, pair, heap look at grains, at -t or at the end.  The table\n"
+     "and gnuplot's script stay beside the picture, in the run's directory unless -o says another.\n",
+     plot_options, 1, 1, cli_plot},
     {"check", "SCENE", "tests a scene and simulates nothing", "Exit code 3 if it has errors.\n",
      check_options, 1, 1, cli_check},
     {"scenes", "", "lists the built-in scenes and the models that can run each", "",

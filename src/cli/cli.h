@@ -18,6 +18,7 @@ int cli_replay(const struct options *options);
 int cli_map(const struct options *options);
 int cli_export(const struct options *options);
 int cli_figure(const struct options *options);
+int cli_plot(const struct options *options);
 int cli_check(const struct options *options);
 int cli_scenes(const struct options *options);
 int cli_info(const struct options *options);

@@ -72,6 +72,7 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
       "mean over this time; default: a snapshot")                                               \
     X(as,        "as",        0,   "LIST",  NULL, FORM_PLAIN, "formats: png,npy,vti,csv")       \
     X(plot_as,   "as",        0,   "LIST",  NULL, FORM_PLAIN, "formats: png,svg,pdf,text")      \
+    X(of,        "of",        0,   "WHAT",  NULL, FORM_PLAIN, "what to plot: energy, pair, ...") \
     X(small,     "quick",     0,   NULL,    NULL, FORM_PLAIN,                                   \
       "reduced numbers: each figure within a minute")                                           \
     X(to,        "to",        0,   "LIST",  NULL, FORM_PLAIN,                                   \
