@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Two outputs nearer than this share of their time are meant for the same time. */
 static const double same_time = 1e-9;
@@ -30,6 +31,7 @@ static void set_schedules(struct writer *writer, const struct scene *scene)
     schedules[WRITER_LOG].interval = output->log;
     schedules[WRITER_MAP].interval = output->maps;
     schedules[WRITER_TALLY].interval = output->tallies;
+    schedules[WRITER_TRAJECTORY].interval = output->trajectory;
     const double *average = scene->measure.average;
     writer->averages = isfinite(average[0]) && isfinite(average[1]) && average[1] > average[0]
                     && (output->maps > 0 || scene->measure.fields.count > 0);
@@ -101,8 +103,21 @@ static bool open_pictures(struct writer *writer, bool resume, struct error *erro
     if (!film_open(&writer->film, scene, writer->sim->model, &view, error)) return false;
     writer->draws_later = film_needs_gathering(&writer->film);
     writer->keeps_grains = scene->output.dump || writer->draws_later;
+    if (resume && !writer->keeps_grains) folder_clear(writer->directory, "dump");
     writer->movie_late = *scene->output.movie && resume && !writer->draws_later;
     return !*scene->output.movie || writer->draws_later || resume || begin_movie(writer, error);
+}
+
+/* A new one; an earlier run's is opened once it is known how much of it counts. */
+static bool begin_trajectory(struct writer *writer, bool resume, struct error *error)
+{
+    char path[FILE_PATH_MAX];
+    if (!(writer->schedules[WRITER_TRAJECTORY].interval > 0)) return true;
+    if (!h5md_available(error)) return false;
+    if (resume) return true;
+    writer->h5md = h5md_create(folder_path(path, writer->directory, "trajectory.h5"),
+                               writer->sim->scene, error);
+    return writer->h5md != NULL;
 }
 
 bool writer_open(struct writer *writer, const struct simulation *sim, const char *directory,
@@ -128,7 +143,7 @@ bool writer_open(struct writer *writer, const struct simulation *sim, const char
         stress_begin(writer->stress, simulation_tally(sim), 0);
     }
     char path[FILE_PATH_MAX];
-    return make_folders(writer, error)
+    return make_folders(writer, error) && begin_trajectory(writer, resume, error)
         && histograms_open(&writer->histograms, directory, sim, resume, error)
         && (!writer->keeps_grains || resume
             || dumps_begin(&writer->dumps, directory, 0, error))
@@ -142,6 +157,12 @@ bool writer_resume(struct writer *writer, struct error *error)
     const uint64_t frames = writer->schedules[WRITER_FRAME].next;
     if (writer->keeps_grains && !dumps_begin(&writer->dumps, writer->directory, frames, error)) {
         return false;
+    }
+    if (writer->schedules[WRITER_TRAJECTORY].interval > 0) {
+        char path[FILE_PATH_MAX];
+        writer->h5md = h5md_resume(folder_path(path, writer->directory, "trajectory.h5"),
+                                   writer->schedules[WRITER_TRAJECTORY].next, error);
+        if (!writer->h5md) return false;
     }
     for (uint64_t k = 0; writer->draws_later && k < frames; k++) {
         if (!dumps_load(&writer->dumps, (uint32_t)k, &writer->grains, error)) return false;
@@ -243,6 +264,13 @@ bool writer_serve(struct writer *writer, double t, double wall, struct error *er
         case WRITER_LOG: done = serve_log(writer, wall, error); break;
         case WRITER_TALLY: done = serve_histograms(writer, error); break;
         case WRITER_MAP: done = serve_map(writer, index, error); break;
+        case WRITER_TRAJECTORY:
+            done = look(writer, false, error);
+            enter(writer, PART_files);
+            done = done && grains_sort(&writer->grains, error)
+                && h5md_add(writer->h5md, &writer->grains,
+                            simulation_count(writer->sim).steps, error);
+            break;
         case WRITER_EVENTS: break;
         }
     }
@@ -252,8 +280,15 @@ bool writer_serve(struct writer *writer, double t, double wall, struct error *er
 
 bool writer_sync(struct writer *writer, struct error *error)
 {
-    return encoder_wait(writer->encoder, error) && histograms_sync(&writer->histograms, error)
-        && (!writer->logbook.ledger.stream || ledger_sync(&writer->logbook.ledger, error));
+    if (!encoder_wait(writer->encoder, error)) return false;
+    static const char *const folders[] = {".", "frames", "maps", "dump"};
+    for (size_t k = 0; k < sizeof folders / sizeof *folders; k++) {
+        char path[FILE_PATH_MAX];
+        file_sync(folder_path(path, writer->directory, "%s", folders[k]));
+    }
+    return histograms_sync(&writer->histograms, error)
+        && (!writer->logbook.ledger.stream || ledger_sync(&writer->logbook.ledger, error))
+        && (!writer->h5md || h5md_sync(writer->h5md, error));
 }
 
 /* Frames whose colours had to wait for the whole run. */
@@ -316,16 +351,27 @@ bool writer_finish(struct writer *writer, double wall, bool (*step)(void *, uint
     if (writer->draws_later) done = draw_dumps(writer, wall, step, context, error);
     done = done && serve_histograms(writer, error) && writer_sync(writer, error)
         && save_screens(writer, error);
+    if (done && writer->h5md) {
+        done = h5md_close(writer->h5md, error);
+        writer->h5md = NULL;
+    }
     if (done && writer->movie_late) done = movie_from_frames(writer, error);
     if (done && writer->movie) {
         done = movie_commit(writer->movie, error);
         writer->movie = NULL;
     }
-    if (done && writer->draws_later && !writer->sim->scene->output.dump) {
-        folder_clear(writer->directory, "dump");
-    }
     enter(writer, before);
     return done;
+}
+
+/* The index goes first: without it the other files mean nothing, so that it does not matter where
+ * this is interrupted. */
+void writer_tidy(const struct writer *writer)
+{
+    char path[FILE_PATH_MAX];
+    if (!writer->draws_later || writer->sim->scene->output.dump) return;
+    unlink(folder_path(path, writer->directory, "dump/index.csv"));
+    folder_clear(writer->directory, "dump");
 }
 
 void writer_archive(struct writer *writer, struct archive *archive)
@@ -351,6 +397,7 @@ void writer_close(struct writer *writer)
     film_close(&writer->film);
     mapper_close(&writer->mapper);
     dumps_close(&writer->dumps);
+    h5md_close(writer->h5md, NULL);
     grains_free(&writer->grains);
     *writer = (struct writer){0};
 }

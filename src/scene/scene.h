@@ -151,7 +151,7 @@ struct measure {
 
 /* `output`: what a run writes and how often; 0 = never. */
 struct output {
-    double frames, log, maps, checkpoint;       /* intervals in simulated time */
+    double frames, log, maps, trajectory, checkpoint;   /* intervals in simulated time */
     double tallies;             /* ... of histograms; 0: one, of the whole run */
     double checkpoint_wall;     /* seconds of wall time */
     bool   dump;                /* grain states at each frame, .npy */

@@ -205,6 +205,8 @@ static const struct key output_keys[] = {
     REAL(output, frames, "0", 0, FAR, "time", "between pictures; 0: none"),
     REAL(output, log, "0", 0, FAR, "time", "between rows of log.csv; 0: none"),
     REAL(output, maps, "0", 0, FAR, "time", "between maps; 0: none"),
+    REAL(output, trajectory, "0", 0, FAR, "time",
+         "between frames of trajectory.h5 (H5MD, compressed); 0: none"),
     REAL(output, tallies, "0", 0, FAR, "time",
          "between histograms in impact.csv and collisions.csv; 0: one, of the whole run"),
     REAL(output, checkpoint, "0", 0, FAR, "time", "between checkpoints; 0: none"),
