@@ -21,6 +21,7 @@ struct bench_md_result {
     uint32_t grains;
     double particle_steps[3];   /* per second of wall time, the best: [1] one thread, [2] two */
     double per_core[3];         /* per processor second of all threads */
+    double gain;                /* wall time on one thread / on two, median of neighbouring runs */
     double contacts;            /* per grain, each counted at both */
     uint64_t tangential;        /* forces evaluated */
 };

@@ -18,7 +18,7 @@ int main(int argc, char **argv)
         return EXIT_FAILED;
     }
     for (int friction = 1; friction >= 0; friction--) {
-        const struct bench_md_case what = {.tiles = tiles, .steps = steps, .repeats = 7,
+        const struct bench_md_case what = {.tiles = tiles, .steps = steps, .repeats = 15,
                                            .friction = friction};
         struct bench_md_result r;
         if (!bench_md(&what, &tile, &r, &error)) {
@@ -26,10 +26,10 @@ int main(int argc, char **argv)
             return EXIT_FAILED;
         }
         printf("%u discs, %s: %.2f M particle-steps per core-second on 1 thread, %.2f on 2; "
-               "wall: %.2f, %.2f; contacts %.2f, tangential forces %llu\n", r.grains,
+               "wall: %.2f, %.2f, gain %.3f; contacts %.2f, tangential forces %llu\n", r.grains,
                friction ? "friction with springs" : "no friction", 1e-6 * r.per_core[1],
                1e-6 * r.per_core[2], 1e-6 * r.particle_steps[1], 1e-6 * r.particle_steps[2],
-               r.contacts,
+               r.gain, r.contacts,
                (unsigned long long)r.tangential);
         fflush(stdout);
     }

@@ -42,6 +42,9 @@ void *file_load(const char *path, size_t size_max, size_t *size, struct error *e
 
 bool file_exists(const char *path);
 
+/* Brings a file that another program wrote, or the names in a directory, to the disk. */
+void file_sync(const char *path);
+
 /* Makes the directory and its parents; true if it is there already. */
 bool file_make_directory(const char *path, struct error *error);
 

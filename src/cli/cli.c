@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "cli/cli.h"
+#include "run/exporter.h"
 
 #define SIMULATING OPTION_model, OPTION_method, OPTION_set, OPTION_seed, OPTION_until, OPTION_quick
 #define LOOK                                                                                    \
@@ -20,7 +21,9 @@ static const uint8_t map_options[] = {OPTION_output, OPTION_field, OPTION_time, 
     OPTION_as, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_size, OPTION_zoom, OPTION_theme,
     OPTION_colormap, OPTION_scale, OPTION_map_range, OPTION_title, SIMULATING, ALWAYS};
 static const uint8_t export_options[] = {OPTION_to, OPTION_output, OPTION_frame, OPTION_time,
-    OPTION_help, OPTION_COUNT};
+    OPTION_field, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_set, OPTION_help, OPTION_COUNT};
+static const uint8_t figure_options[] = {OPTION_small, OPTION_output, OPTION_plot_as, OPTION_json,
+    ALWAYS};
 static const uint8_t check_options[] = {OPTION_explain, SIMULATING, OPTION_help, OPTION_COUNT};
 static const uint8_t scenes_options[] = {OPTION_json, OPTION_help, OPTION_COUNT};
 static const uint8_t info_options[] = {OPTION_frame, OPTION_time, OPTION_grain, OPTION_at,
@@ -47,9 +50,16 @@ const struct command cli_commands[] = {
      "A snapshot at -t (default: the end), or the mean over --average T1:T2.\n",
      map_options, 1, 1, cli_map},
     {"export", "RUN", "the grains of a run for other programs",
-     "--to csv: one table a frame, id,x,y,vx,vy,spin,radius,collision_rate,species.  Without\n"
-     "--frame or -t all frames are exported.\n",
+#define X(name, file, writer, doc) "  " #name ": " doc "\n"
+     EXPORTER_FORMATS(X)
+#undef X
+     "Without --frame or -t all frames are exported.\n",
      export_options, 1, 1, cli_export},
+    {"figure", "[ID...]", "makes figures of the four papers again, with a verdict on each",
+     "Without an ID it lists them.  ID may be `all`; several make one page, index.html.  All goes\n"
+     "into the directory figures unless -o says another: pictures, a table of every curve, and\n"
+     "gnuplot's script.  Exit code 4 if a verdict is other than `agrees`.\n",
+     figure_options, 0, OPTIONS_OPERANDS_MAX, cli_figure},
     {"check", "SCENE", "tests a scene and simulates nothing", "Exit code 3 if it has errors.\n",
      check_options, 1, 1, cli_check},
     {"scenes", "", "lists the built-in scenes and the models that can run each", "",

@@ -15,6 +15,7 @@ int cli_frame(const struct options *options);
 int cli_movie(const struct options *options);
 int cli_map(const struct options *options);
 int cli_export(const struct options *options);
+int cli_figure(const struct options *options);
 int cli_check(const struct options *options);
 int cli_scenes(const struct options *options);
 int cli_info(const struct options *options);

@@ -70,7 +70,11 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(average,   "average",   0,   "T1:T2", NULL, FORM_PLAIN,                                   \
       "mean over this time; default: a snapshot")                                               \
     X(as,        "as",        0,   "LIST",  NULL, FORM_PLAIN, "formats: png,npy,vti,csv")       \
-    X(to,        "to",        0,   "FORMAT", NULL, FORM_PLAIN, "csv, npy")                      \
+    X(plot_as,   "as",        0,   "LIST",  NULL, FORM_PLAIN, "formats: png,svg,pdf,text")      \
+    X(small,     "quick",     0,   NULL,    NULL, FORM_PLAIN,                                   \
+      "reduced numbers: each figure within a minute")                                           \
+    X(to,        "to",        0,   "LIST",  NULL, FORM_PLAIN,                                   \
+      "formats: csv,npy,vtp,vti,lammps,extxyz,h5md; default: csv")                              \
     X(explain,   "explain",   0,   NULL,    NULL, FORM_PLAIN,                                   \
       "which effects are on, and which off")                                                    \
     X(frame,     "frame",     0,   "N",     NULL, FORM_PLAIN,                                   \

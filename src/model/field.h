@@ -4,6 +4,7 @@
 #define FIELD_H
 
 #include "base/error.h"
+#include "scene/scene.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -17,6 +18,14 @@ struct field {
     uint32_t nx, ny, components;        /* 1 scalar, 2 vector */
     double  *values;            /* [component][iy][ix]; row 0 is the lowest; NAN: no grains there */
 };
+
+enum { FIELD_CELLS_MAX = 16777216 };    /* of a map: 4096 x 4096 */
+
+/* The grid of maps over the scene's box: cells of measure.cell (absent: two mean diameters); along
+ * a periodic side the size is changed a little so that a whole number of them fits (x first: with
+ * two periodic sides the last row may be cut short).  Returns the size of a cell. */
+double field_cells(const struct scene *scene, const struct measure *measure, double *nx,
+                   double *ny);
 
 bool field_create(struct field *field, double x0, double y0, double cell, uint32_t nx,
                   uint32_t ny, uint32_t components, struct error *error);

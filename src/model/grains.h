@@ -34,6 +34,9 @@ struct grains {
     double   *angle, *spin;     /* counter-clockwise; zero where the model has no rotation */
     double   *radius, *mass;
     float    *collision_rate;   /* contacts begun per time, over the last whole window */
+    uint32_t *collisions;       /* contacts begun since the start, with grains and walls ... */
+    uint32_t *collisions_elastic;       /* ... and those that the TC rule kept elastic; both stay
+                                 * zero without EFFECT_COLLISION_COUNT */
     uint16_t *species;
     struct contact *contacts;   /* NULL: not wanted */
     struct arena arena;         /* owns the arrays if grains_create made them */
@@ -43,5 +46,9 @@ struct grains {
 bool grains_create(struct grains *grains, uint32_t capacity, uint32_t contact_capacity,
                    struct error *error);
 void grains_free(struct grains *grains);
+
+/* Brings the grains into the order of their ids, as readers expect who follow a grain by its row;
+ * models keep them in any order.  The contacts, which name rows, are dropped. */
+bool grains_sort(struct grains *grains, struct error *error);
 
 #endif

@@ -27,8 +27,12 @@ static json_t *freetype_version(void)
 
 json_t *build_versions(void)
 {
-    return json_pack("{s:s, s:s, s:s, s:o, s:s, s:s, s:s, s:i}",
+    json_t *versions = json_pack("{s:s, s:s, s:s, s:o, s:s, s:s, s:s, s:i}",
         "sandreel", build_version, "compiler", __VERSION__, "libpng", png_get_libpng_ver(NULL),
         "freetype", freetype_version(), "fftw", fftw_version, "jansson", jansson_version_str(),
         "libconfig", SANDREEL_LIBCONFIG, "openmp", _OPENMP);
+#ifdef SANDREEL_HDF5
+    json_object_set_new(versions, "hdf5", json_string(SANDREEL_HDF5));
+#endif
+    return versions;
 }

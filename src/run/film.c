@@ -124,6 +124,29 @@ void film_settle(struct film *film)
     if (film->map) settle(&film->field_values, false, film->field_range);
 }
 
+void film_settle_together(struct film *const *films, uint32_t count)
+{
+    struct film *first = films[0];
+    for (uint32_t k = 1; k < count; k++) {
+        struct film *film = films[k];
+        if (film->view.color == first->view.color) quantile_merge(&first->values, &film->values);
+        if (film->map_kind == first->map_kind) {
+            quantile_merge(&first->field_values, &film->field_values);
+        }
+    }
+    film_settle(first);
+    for (uint32_t k = 1; k < count; k++) {
+        struct film *film = films[k];
+        if (film->view.color == first->view.color && isnan(film->range[0])) {
+            memcpy(film->range, first->range, sizeof film->range);
+        }
+        if (film->map_kind == first->map_kind && isnan(film->field_range[0])) {
+            memcpy(film->field_range, first->field_range, sizeof film->field_range);
+        }
+        film_settle(film);
+    }
+}
+
 static void set_variable(struct film *film, uint32_t index, const char *name, const char *format,
                          ...) __attribute__((format(printf, 4, 5)));
 

@@ -45,6 +45,10 @@ bool film_needs_contacts(const struct view *view);
 bool film_gather(struct film *film, const struct grains *grains, struct error *error);
 void film_settle(struct film *film);
 
+/* The same for films that are seen side by side: those that colour by the same quantity share its
+ * range, so that they can be compared.  What the first one gathered becomes that of all. */
+void film_settle_together(struct film *const *films, uint32_t count);
+
 /* Draws into film->image.  `steps` and `wall` fill the variables {steps} and {wall} of labels. */
 bool film_draw(struct film *film, const struct grains *grains, uint64_t steps, double wall,
                struct error *error);

@@ -30,6 +30,8 @@ void folder_choose(char path[FILE_PATH_MAX], const char *name, const char *model
     }
 }
 
+static const char *const folders[] = {"frames", "maps", "dump", "checkpoint"};
+
 static bool is_empty(const char *directory)
 {
     DIR *list = opendir(directory);
@@ -58,6 +60,36 @@ void folder_remove(const char *directory, const char *name)
 {
     char path[FILE_PATH_MAX];
     unlink(folder_path(path, directory, "%s", name));
+}
+
+static void sweep_partial(const char *folder)
+{
+    DIR *list = opendir(folder);
+    if (!list) return;
+    for (struct dirent *entry; (entry = readdir(list));) {
+        const char *ending = strrchr(entry->d_name, '.');
+        if (ending && strcmp(ending, ".partial") == 0) folder_remove(folder, entry->d_name);
+    }
+    closedir(list);
+}
+
+bool folder_reclaim(const char *directory, struct error *error)
+{
+    static const char *const marks[] = {"scene.cfg", "scene.cfg.new", "scene.cfg.new.partial"};
+    char path[FILE_PATH_MAX];
+    bool found = file_exists(directory) && is_empty(directory);
+    for (size_t k = 0; k < sizeof marks / sizeof *marks; k++) {
+        found = found || file_exists(folder_path(path, directory, "%s", marks[k]));
+    }
+    if (!found) {
+        return error_set(error, "%s: there is no run here that could go on; run it without "
+                         "--resume", directory);
+    }
+    sweep_partial(directory);
+    for (size_t k = 0; k < sizeof folders / sizeof *folders; k++) {
+        sweep_partial(folder_path(path, directory, "%s", folders[k]));
+    }
+    return true;
 }
 
 void folder_clear(const char *directory, const char *name)
@@ -92,8 +124,8 @@ bool folder_claim(const char *directory, bool force, struct error *error)
         || !file_exists(folder_path(manifest, directory, "manifest.json"))) {
         return true;
     }
-    static const char *const folders[] = {"frames", "maps", "dump", "checkpoint"};
-    static const char *const files[] = {"scene.cfg", "manifest.json", "log.csv", "broken.png"};
+    static const char *const files[] = {"scene.cfg", "manifest.json", "log.csv", "broken.png",
+                                        "impact.csv", "collisions.csv", "trajectory.h5"};
     for (size_t k = 0; k < sizeof folders / sizeof *folders; k++) {
         folder_clear(directory, folders[k]);
     }

@@ -21,6 +21,10 @@ void folder_choose(char path[FILE_PATH_MAX], const char *name, const char *model
  * former run left in it (and nothing else) is removed. */
 bool folder_claim(const char *directory, bool force, struct error *error);
 
+/* For a run that goes on: removes the unfinished files of a run that was killed.  False if the
+ * directory holds neither a run nor the beginning of one. */
+bool folder_reclaim(const char *directory, struct error *error);
+
 /* Removes the files of a run from one of its folders, and the folder if nothing is left. */
 void folder_clear(const char *directory, const char *name);
 

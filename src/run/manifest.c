@@ -64,14 +64,16 @@ static json_t *describe(const struct manifest *manifest)
         "model", manifest->model->name, "seed", (json_int_t)scene->seed,
         "written", when, "scene_hash", hash_word(manifest->scene_hash),
         "versions", build_versions());
+    const double *range = manifest->range;
+    if (root && range) {
+        json_object_set_new(root, "range", json_pack("[o, o]", number(range[0]), number(range[1])));
+        json_object_set_new(root, "color", json_integer(scene->view.color));
+    }
     const struct run_result *result = manifest->result;
     if (!root || !result) return root;
     json_object_set_new(root, "time", number(result->counters.time));
     json_object_set_new(root, "until", number(scene->until));
     json_object_set_new(root, "state_digest", hash_word(result->digest));
-    json_object_set_new(root, "range", json_pack("[o, o]", number(result->range[0]),
-                                                 number(result->range[1])));
-    json_object_set_new(root, "color", json_integer(scene->view.color));
     json_object_set_new(root, "counts", counts(result));
     json_object_set_new(root, "seconds", seconds(result));
     return root;

@@ -13,6 +13,7 @@ struct manifest {
     const char *status;         /* "running", "done", "interrupted", "stopped", "broken", ... */
     uint64_t scene_hash;
     const struct run_result *result;    /* NULL while it runs */
+    const double *range;        /* of the colours; NULL, or NANs: not known */
 };
 
 bool manifest_save(const struct manifest *manifest, const char *directory, struct error *error);

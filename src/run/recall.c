@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 json_t *recall_manifest(const char *run, struct error *error)
 {
@@ -21,6 +22,16 @@ json_t *recall_manifest(const char *run, struct error *error)
     free(text);
     if (!root) error_set(error, "%s:%d: not a manifest: %s", path, cause.line, cause.text);
     return root;
+}
+
+bool recall_done(const char *run)
+{
+    struct error ignored;
+    json_t *root = recall_manifest(run, &ignored);
+    const char *status = json_string_value(json_object_get(root, "status"));
+    const bool done = status && strcmp(status, "done") == 0;
+    json_decref(root);
+    return done;
 }
 
 void recall_range(const char *run, const struct scene *scene, struct view *view)

@@ -12,6 +12,9 @@
 /* The manifest as JSON, a new reference; NULL with the cause. */
 json_t *recall_manifest(const char *run, struct error *error);
 
+/* Does the manifest say that this run came to its end? */
+bool recall_done(const char *run);
+
 /* If `run` is a run whose grains were coloured as `view` wants it, and view->range is open: takes
  * the range of that run. */
 void recall_range(const char *run, const struct scene *scene, struct view *view);

@@ -13,6 +13,8 @@
 #include "run/folder.h"
 #include "run/look.h"
 #include "run/manifest.h"
+#include "run/recall.h"
+#include "run/resolved.h"
 #include "run/writer.h"
 
 #include <errno.h>
@@ -28,12 +30,15 @@ struct run {
     const struct run_request *request;
     const struct scene *scene;
     char   directory[FILE_PATH_MAX];
+    char  *scene_text;          /* the resolved scene */
     uint64_t scene_hash;
+    bool   resumes;             /* from a checkpoint */
     struct simulation sim;
     struct writer writer;
     struct parts parts;
     struct error *error;        /* the caller's */
     uint64_t turn;              /* of the next checkpoint */
+    bool     saved;             /* the newest checkpoint is of the present */
     uint64_t checkpoint_next;   /* at this multiple of output.checkpoint */
     double   checkpoint_wall;   /* when the last one was written, wall time */
     uint64_t budget;            /* of one piece */
@@ -43,53 +48,52 @@ struct run {
     double   work_done, work_mark;
 };
 
-uint64_t run_scene_hash(const char *text)
-{
-    uint64_t hash = ARCHIVE_HASH_START;
-    while (*text) {
-        const size_t length = strcspn(text, "\n"), indent = strspn(text, " ");
-        const bool counts = text[indent] != '#' && strncmp(text, "until ", 6) != 0;
-        if (counts) hash = archive_hash(hash, text, length);
-        text += length + (text[length] == '\n');
-    }
-    return hash;
-}
-
 static double wall_now(const struct run *run)
 {
     return run->wall_before + clock_wall() - run->start;
 }
 
-static bool hash_file(const char *path, uint64_t *hash, struct error *error)
+static char *load_text(const char *path, struct error *error)
 {
     size_t size;
-    char *text = file_load(path, 1 << 28, &size, error);
-    if (!text) return false;
-    *hash = run_scene_hash(text);
-    free(text);
-    return true;
+    return file_load(path, 1 << 28, &size, error);
 }
 
-/* Writes the resolved scene; a run that is continued must be of the same one. */
+/* A run that is continued must be of the same scene: tells what differs. */
+static bool compare_scenes(struct run *run, const char *path)
+{
+    char difference[500], *there = load_text(path, run->error);
+    if (!there) return false;
+    const bool same = resolved_hash(there) == run->scene_hash;
+    if (!same) resolved_difference(there, run->scene_text, difference, sizeof difference);
+    free(there);
+    return same || error_set_code(run->error, EXIT_USAGE, "%s: this run was made from another "
+        "scene or with other settings (only 'until' may differ): %s; `sandreel run %s --resume` "
+        "takes its own, or start anew with --force", run->directory, difference, run->directory);
+}
+
+/* Writes the resolved scene beside its final name, which it gets from name_scene(). */
 static bool settle_scene(struct run *run)
 {
     char path[FILE_PATH_MAX], fresh[FILE_PATH_MAX];
     folder_path(path, run->directory, "scene.cfg");
     folder_path(fresh, run->directory, "scene.cfg.new");
-    uint64_t old = 0;
-    if (run->request->resume && !hash_file(path, &old, run->error)) return false;
     if (!scene_write(run->scene, fresh, run->error)) return false;
-    bool done = hash_file(fresh, &run->scene_hash, run->error);
-    if (done && run->request->resume && old != run->scene_hash) {
-        done = error_set_code(run->error, EXIT_USAGE, "%s: this run was made from another scene or "
-            "with other settings (only 'until' may differ); `sandreel run %s --resume` takes its "
-            "own, or start anew with --force", run->directory, run->directory);
-    }
-    if (done && rename(fresh, path) != 0) {
-        done = error_set(run->error, "%s: cannot name this file: %s", path, strerror(errno));
-    }
-    if (!done) folder_remove(run->directory, "scene.cfg.new");
-    return done;
+    run->scene_text = load_text(fresh, run->error);
+    if (!run->scene_text) return false;
+    run->scene_hash = resolved_hash(run->scene_text);
+    const bool compares = run->request->resume && file_exists(path);
+    if (!compares || compare_scenes(run, path)) return true;
+    folder_remove(run->directory, "scene.cfg.new");
+    return false;
+}
+
+static bool name_scene(struct run *run)
+{
+    char path[FILE_PATH_MAX], fresh[FILE_PATH_MAX];
+    folder_path(path, run->directory, "scene.cfg");
+    return rename(folder_path(fresh, run->directory, "scene.cfg.new"), path) == 0
+        || error_set(run->error, "%s: cannot name this file: %s", path, strerror(errno));
 }
 
 /* Everything that a continued run must know beside the model's state. */
@@ -112,13 +116,14 @@ static bool save_state(struct run *run, const char *special)
     if (done && special) {
         done = file_make_directory(folder_path(path, run->directory, "checkpoint"), run->error)
             && checkpoint_save_as(folder_path(path, run->directory, "checkpoint/%s", special),
-                                  run->turn, run->scene_hash, &archive, run->error);
+                                  run->turn, run->scene_text, &archive, run->error);
     } else if (done) {
         done = checkpoint_save(folder_path(path, run->directory, "checkpoint"), run->turn++,
-                               run->scene_hash, &archive, run->error);
+                               run->scene_text, &archive, run->error);
     }
     archive_end(&archive);
     run->checkpoint_wall = clock_wall();
+    run->saved = done && !special;
     return done;
 }
 
@@ -136,10 +141,11 @@ static bool load_checkpoint(struct run *run)
     void *bytes;
     size_t size;
     folder_path(path, run->directory, "checkpoint");
-    if (!checkpoint_load(path, run->scene_hash, &bytes, &size, &run->turn, run->error)) {
+    if (!checkpoint_load(path, run->scene_text, &bytes, &size, &run->turn, run->error)) {
         return false;
     }
     run->turn++;
+    run->saved = true;
     struct archive archive;
     archive_begin_load(&archive, bytes, size);
     archive_run(run, &archive);
@@ -247,6 +253,7 @@ static bool advance_to(struct run *run, double t)
         const double start = clock_wall();
         const enum advance outcome = simulation_advance(&run->sim, t, run->budget, run->error);
         const uint64_t steps = simulation_count(&run->sim).steps - before;
+        run->saved = run->saved && steps == 0;
         if (outcome == ADVANCE_BROKEN) return give_up(run);
         adapt(run, clock_wall() - start, steps);
         const double time = simulation_count(&run->sim).time, until = run->scene->until;
@@ -274,12 +281,13 @@ static bool simulate(struct run *run)
         const double t = fmin(due, until);
         if (!advance_to(run, t)) return false;
         if (due > until) break;
+        run->saved = run->saved && writer_due(&run->writer) > t;
         if (!writer_serve(&run->writer, t, wall_now(run), run->error)) return false;
         if (checkpoint_due(run) > t) continue;
         run->checkpoint_next++;
         if (!save_checkpoint(run)) return false;
     }
-    return run->scene->output.checkpoint == 0 || save_checkpoint(run);
+    return run->scene->output.checkpoint == 0 || run->saved || save_checkpoint(run);
 }
 
 static bool drawn_one(void *context, uint64_t done, uint64_t count)
@@ -299,7 +307,7 @@ static void fill_result(struct run *run, struct run_result *result)
     result->wall = wall_now(run);
     result->frames = run->writer.schedules[WRITER_FRAME].next;
     result->maps = run->writer.maps;
-    result->log_rows = run->writer.logbook.rows;
+    result->log_rows = run->writer.logbook.ledger.rows;
     result->range[0] = run->writer.draws ? run->writer.film.range[0] : NAN;
     result->range[1] = run->writer.draws ? run->writer.film.range[1] : NAN;
 }
@@ -311,25 +319,56 @@ static const char *status_word(bool done, enum exit_code code)
     return code == EXIT_INTERRUPT || code == EXIT_TERMINATED ? "interrupted" : "failed";
 }
 
+static bool save_manifest(const struct run *run, const char *status,
+                          const struct run_result *result, struct error *error)
+{
+    const struct manifest manifest = {
+        .scene = run->scene, .model = run->request->model, .status = status,
+        .scene_hash = run->scene_hash, .result = result,
+        .range = run->writer.draws ? run->writer.film.range : NULL,
+    };
+    return manifest_save(&manifest, run->directory, error);
+}
+
+/* A run that was killed at any moment goes on as if it had not been, so the order counts: the
+ * directory becomes a run (name_scene) when all is opened, `done` is told when everything is
+ * there, and only then what is no longer needed goes away. */
 static bool carry_out(struct run *run, struct run_result *result)
 {
     const struct run_request *request = run->request;
-    struct manifest manifest = {run->scene, request->model, "running", run->scene_hash, NULL};
-    if (!writer_open(&run->writer, &run->sim, run->directory, request->threads, request->resume,
-                     &run->parts, run->error)) {
+    if (!writer_open(&run->writer, &run->sim, run->directory, request->threads, run->resumes,
+                     &run->parts, run->error)
+        || (run->resumes && !load_checkpoint(run))
+        || !save_manifest(run, "running", NULL, run->error) || !name_scene(run)) {
+        folder_remove(run->directory, "scene.cfg.new");
         return false;
     }
-    if (!manifest_save(&manifest, run->directory, run->error)) return false;
-    if (request->resume && !load_checkpoint(run)) return false;
     run->time_start = simulation_count(&run->sim).time;
     run->rate_mark = run->checkpoint_wall = clock_wall();
     bool done = simulate(run);
     if (done) done = writer_finish(&run->writer, wall_now(run), drawn_one, run, run->error);
     fill_result(run, result);
-    manifest.status = status_word(done, run->error ? run->error->code : EXIT_FAILED);
-    manifest.result = result;
     struct error minor = {0};
-    return manifest_save(&manifest, run->directory, done ? run->error : &minor) && done;
+    done = save_manifest(run, status_word(done, run->error->code), result,
+                         done ? run->error : &minor) && done;
+    if (done) writer_tidy(&run->writer);
+    return done;
+}
+
+/* Opens the directory.  A run that died before its first checkpoint is begun anew. */
+static bool claim(struct run *run)
+{
+    const struct run_request *request = run->request;
+    if (!request->resume) return folder_claim(run->directory, request->force, run->error);
+    if (!folder_reclaim(run->directory, run->error)) return false;
+    char path[FILE_PATH_MAX];
+    run->resumes = checkpoint_exists(folder_path(path, run->directory, "checkpoint"))
+                || recall_done(run->directory);
+    if (!run->resumes && request->warn) {
+        request->warn(request->context, "this run ended before its first checkpoint; it begins "
+                                        "anew");
+    }
+    return true;
 }
 
 bool run_scene(const struct run_request *request, struct run_result *result,
@@ -344,12 +383,12 @@ bool run_scene(const struct run_request *request, struct run_result *result,
     *result = (struct run_result){0};
     snprintf(run->directory, sizeof run->directory, "%s", request->directory);
     parts_begin(&run->parts, PART_core);
-    bool done = request->resume || folder_claim(run->directory, request->force, run->error);
-    done = done && settle_scene(run)
+    const bool done = claim(run) && settle_scene(run)
         && simulation_create(&run->sim, request->model, request->scene, run->error)
         && carry_out(run, result);
     writer_close(&run->writer);
     simulation_destroy(&run->sim);
+    free(run->scene_text);
     free(run);
     return done;
 }

@@ -51,8 +51,4 @@ struct run_result {
 bool run_scene(const struct run_request *request, struct run_result *result,
                struct error *error);
 
-/* Hash of a resolved scene's text, without comments and `until`, which may differ when a run is
- * continued. */
-uint64_t run_scene_hash(const char *text);
-
 #endif

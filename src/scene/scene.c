@@ -320,6 +320,13 @@ const struct scene *scene_at(const struct scene *scene, double t)
     return scene->phases[phase];
 }
 
+effects_t scene_effects(const struct scene *scene)
+{
+    effects_t effects = 0;
+    for (uint32_t p = 0; p < scene->phase_count; p++) effects |= scene->phases[p]->effects;
+    return effects;
+}
+
 double scene_mass(const struct species *species, double radius)
 {
     return species->density * M_PI * radius * radius;

@@ -143,11 +143,16 @@ struct measure {
     double range[2];            /* of the colours of maps; NANs: each map its own */
     bool   collisions;          /* count contacts for each grain */
     double collision_window;    /* over which a rate is formed; NAN: the frame interval */
+    bool   collision_counts;    /* contacts of each grain since the start, the elastic ones too */
+    bool   impact_parameters;   /* histogram of b/d */
+    uint32_t impact_bins;
+    bool   stress;              /* what contacts carry, in all and in each cell of the maps' grid */
 };
 
 /* `output`: what a run writes and how often; 0 = never. */
 struct output {
-    double frames, log, maps, checkpoint;       /* intervals in simulated time */
+    double frames, log, maps, trajectory, checkpoint;   /* intervals in simulated time */
+    double tallies;             /* ... of histograms; 0: one, of the whole run */
     double checkpoint_wall;     /* seconds of wall time */
     bool   dump;                /* grain states at each frame, .npy */
     bool   contacts;            /* with their contacts */
@@ -237,6 +242,9 @@ bool scene_write(const struct scene *scene, const char *path, struct error *erro
 
 /* The scene in force at time t (phases). */
 const struct scene *scene_at(const struct scene *scene, double t);
+
+/* What any phase calls for. */
+effects_t scene_effects(const struct scene *scene);
 
 /* Mass and moment of inertia of a grain: m = density pi R^2, I = q m R^2. */
 double scene_mass(const struct species *species, double radius);

@@ -193,12 +193,22 @@ static const struct key measure_keys[] = {
     BOOL(measure, collisions, "false", "count the contacts of each grain"),
     REAL(measure, collision_window, "nan", KEY_POSITIVE, FAR, "time",
          "over which a rate is formed; absent: the time between frames"),
+    BOOL(measure, collision_counts, "false",
+         "contacts begun by each grain, elastic ones apart: collisions.csv, and C/N in log.csv"),
+    BOOL(measure, impact_parameters, "false", "how far off centre grains hit: impact.csv"),
+    COUNT(measure, impact_bins, "50", 10000, "of the impact parameter, over 0 to 1"),
+    BOOL(measure, stress, "false",
+         "the stress that collisions carry and the kinetic one: in log.csv, and as maps"),
 };
 
 static const struct key output_keys[] = {
     REAL(output, frames, "0", 0, FAR, "time", "between pictures; 0: none"),
     REAL(output, log, "0", 0, FAR, "time", "between rows of log.csv; 0: none"),
     REAL(output, maps, "0", 0, FAR, "time", "between maps; 0: none"),
+    REAL(output, trajectory, "0", 0, FAR, "time",
+         "between frames of trajectory.h5 (H5MD, compressed); 0: none"),
+    REAL(output, tallies, "0", 0, FAR, "time",
+         "between histograms in impact.csv and collisions.csv; 0: one, of the whole run"),
     REAL(output, checkpoint, "0", 0, FAR, "time", "between checkpoints; 0: none"),
     REAL(output, checkpoint_wall, "600", 0, FAR, "s of wall time", "between checkpoints; 0: none"),
     BOOL(output, dump, "false", "keep the grains' states at each frame"),

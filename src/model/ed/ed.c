@@ -6,6 +6,7 @@
 
 #include "model/ed/ed_change.h"
 #include "model/ed/ed_epoch.h"
+#include "model/ed/ed_watch.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -34,7 +35,7 @@ static bool take_arrays(struct ed *ed)
     const effects_t effects = ed->effects;
     const bool sizes = effects & (EFFECT_POLYDISPERSE | EFFECT_MIXTURE);
     const bool spins = effects & (EFFECT_FRICTION | EFFECT_ROTATION);
-    const bool rates = effects & EFFECT_COLLISION_RATE;
+    const bool rates = effects & EFFECT_COLLISION_RATE, counts = effects & EFFECT_COLLISION_COUNT;
     struct arena *arena = &ed->arena;
     return arena_array(arena, &ed->grains, n) && arena_array(arena, &ed->events, n)
         && arena_array(arena, &ed->id, n)
@@ -46,6 +47,8 @@ static bool take_arrays(struct ed *ed)
         && arena_array(arena, &ed->angle, spins ? n : 0)
         && arena_array(arena, &ed->contacts, rates ? n : 0)
         && arena_array(arena, &ed->rate, rates ? n : 0)
+        && arena_array(arena, &ed->begun, counts ? n : 0)
+        && arena_array(arena, &ed->elastic, counts ? n : 0)
         && arena_array(arena, &ed->cursors, ed->scene->source_count)
         && arena_array(arena, &ed->batch, ed->batch_max);
 }
@@ -199,6 +202,7 @@ static void *ed_create(const struct scene *scene, struct error *error)
         ed_destroy(ed);
         return NULL;
     }
+    ed->watches = ed_watch_wanted(ed);
     place_grains(ed);
     ed->queue.per_time = 1;
     start_anew(ed);
@@ -293,6 +297,8 @@ static void ed_observe(const void *state, struct grains *out)
         if (out->radius) out->radius[k] = r;
         if (out->mass) out->mass[k] = ed_mass(ed, i);
         if (out->collision_rate) out->collision_rate[k] = ed->rate ? ed->rate[i] : 0;
+        if (out->collisions) out->collisions[k] = ed->begun ? ed->begun[i] : 0;
+        if (out->collisions_elastic) out->collisions_elastic[k] = ed->elastic ? ed->elastic[i] : 0;
         if (out->species) out->species[k] = (uint16_t)ed_species(ed, i);
     }
 }
@@ -316,6 +322,8 @@ static void ed_archive(void *state, struct archive *archive)
     archive_array(archive, "ed.angle", ed->angle, ed->count);
     archive_array(archive, "ed.contacts", ed->contacts, ed->count);
     archive_array(archive, "ed.rate", ed->rate, ed->count);
+    archive_array(archive, "ed.begun", ed->begun, ed->count);
+    archive_array(archive, "ed.elastic", ed->elastic, ed->count);
     archive_array(archive, "ed.cursors", ed->cursors, ed->scene->source_count);
     tally_archive(&ed->tally, archive);
     const bool same = !loads || ed->clock.fingerprint == own;
@@ -387,7 +395,8 @@ const struct model model_ed = {
     .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_ROTATION | EFFECT_FRICTION
               | EFFECT_POLYDISPERSE | EFFECT_MIXTURE | EFFECT_PERIODIC | EFFECT_WALLS
               | EFFECT_MOVING_WALLS | EFFECT_GATES | EFFECT_OBSTACLE | EFFECT_OUTFLOW
-              | EFFECT_INFLOW | EFFECT_SCREEN | EFFECT_COLLISION_RATE,
+              | EFFECT_INFLOW | EFFECT_SCREEN | EFFECT_COLLISION_RATE | EFFECT_COLLISION_COUNT
+              | EFFECT_IMPACT | EFFECT_STRESS,
     .settings = &ed_settings_group,
     .resolve  = ed_settings_resolve,
     .memory   = ed_memory,

@@ -93,6 +93,8 @@ struct ed {
     double   *spin, *angle;     /* with ROTATION; the angle at the epoch */
     uint32_t *contacts;         /* with COLLISION_RATE: begun in this window */
     float    *rate;             /* and in the last whole one, per time */
+    uint32_t *begun, *elastic;  /* with COLLISION_COUNT: contacts since the start, elastic ones */
+    bool      watches;          /* the scene wants something counted (ed_watch.h) */
     uint32_t next_id;
     uint32_t *order, *place;    /* for sorting */
 

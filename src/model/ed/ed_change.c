@@ -6,6 +6,7 @@
 
 #include "model/ed/ed.h"
 #include "model/ed/ed_epoch.h"
+#include "model/ed/ed_watch.h"
 
 #include <math.h>
 
@@ -75,8 +76,8 @@ static void bounce(struct ed *ed, uint32_t i, uint32_t w, const struct ed_touch 
                                              + (stuff < law->species_count ? stuff : 0)];
     double r = pair->restitution;
     const double closing = fmax(-touch->vn, 0);
-    if (law->t_c > 0 && now - e->last < law->t_c) r = 1;
-    else r = ed_law_restitution(law, r, closing);
+    const bool elastic = law->t_c > 0 && now - e->last < law->t_c;
+    r = elastic ? 1 : ed_law_restitution(law, r, closing);
     e->last = now;
     const double away = fmax(r * closing, bounce_least * 0.5 * touch->press * law->t_c);
     const double dvn = away - touch->vn;
@@ -94,7 +95,7 @@ static void bounce(struct ed *ed, uint32_t i, uint32_t w, const struct ed_touch 
     kick(ed, i, dvx, dvy);
     tally_impulse(ed, w, touch, -m * dvx, -m * dvy);
     ed->clock.wall_contacts++;
-    if (ed->contacts) ed->contacts[i]++;
+    if (ed->watches) ed_watch_wall(ed, i, touch, m * dvx, m * dvy, elastic);
 }
 
 bool ed_change_solid(struct ed *ed, uint32_t i)
@@ -190,6 +191,7 @@ static void add_grain(struct ed *ed, const struct source_grain *grain)
         ed->contacts[i] = 0;
         ed->rate[i] = 0;
     }
+    if (ed->begun) ed->begun[i] = ed->elastic[i] = 0;
     ed_cells_place(&ed->cells, grain->x, grain->y, &e->cx, &e->cy);
     ed_cells_put(&ed->cells, ed_cells_index(&ed->cells, e->cx, e->cy), i);
     ed->kernels->predict_one(ed, i);

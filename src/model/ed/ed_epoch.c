@@ -45,6 +45,10 @@ void ed_epoch_copy(struct ed *ed, uint32_t to, uint32_t from)
         ed->contacts[to] = ed->contacts[from];
         ed->rate[to] = ed->rate[from];
     }
+    if (ed->begun) {
+        ed->begun[to] = ed->begun[from];
+        ed->elastic[to] = ed->elastic[from];
+    }
 }
 
 /* Clocks are summed in two doubles, so that steps below the last digit of the time add up. */

@@ -9,6 +9,7 @@
 #include "model/ed/ed.h"
 #include "model/ed/ed_change.h"
 #include "model/ed/ed_scan.h"
+#include "model/ed/ed_watch.h"
 
 #include <math.h>
 
@@ -288,7 +289,9 @@ FORCE_INLINE void collide(struct ed *ed, uint32_t i, int with)
     const struct ed_pair *pair = &ed->law.pairs[ed_species(ed, i) * ed->law.species_count
                                                 + ed_species(ed, j)];
     double r = pair->restitution;
-    if (ed->law.t_c > 0 && (now - e->last < ed->law.t_c || now - f->last < ed->law.t_c)) {
+    const bool elastic = ed->law.t_c > 0
+                      && (now - e->last < ed->law.t_c || now - f->last < ed->law.t_c);
+    if (elastic) {
         r = 1;
         ed->clock.elastic++;
     } else {
@@ -316,9 +319,10 @@ FORCE_INLINE void collide(struct ed *ed, uint32_t i, int with)
     kick(ed, i, sx, sy);
     kick(ed, j, -sx * back, -sy * back);
     ed->clock.collisions++;
-    if (ed->contacts) {
-        ed->contacts[i]++;
-        ed->contacts[j]++;
+    if (ed->watches) {
+        const struct ed_blow blow = {a.dx, a.dy, a.du, a.dv, ed_mass(ed, i) * sx,
+                                     ed_mass(ed, i) * sy};
+        ed_watch_pair(ed, i, j, &blow, elastic);
     }
     predict(ed, i, with);
     predict(ed, j, with);

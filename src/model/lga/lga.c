@@ -397,7 +397,7 @@ static void lga_archive(void *state, struct archive *archive)
     double tick = lga->tick;
     if (lga->bits) {
         archive_array(archive, "lga.planes", lga->bits->planes,
-                      (size_t)lga->lattice.rows * LGA_PLANES * lga->bits->words);
+                      (size_t)lga->lattice.rows * lga->bits->depth * lga->bits->words);
     } else {
         archive_array(archive, "lga.moving", lga->moving, lga->sites);
         archive_array(archive, "lga.rest", lga->rest, lga->sites);

@@ -87,7 +87,11 @@ struct strip_sums {             /* what a strip adds up in a step */
     double   speed2_max;
 };
 
-enum { STRIP_GRAINS = 4096, STRIP_GRAINS_MAX = 16384, WINDOW = 128 };
+enum {
+    STRIP_GRAINS = 4096, STRIP_GRAINS_MAX = 16384,
+    STRIPS_SHARED = 4,          /* many strips come in multiples of it, to share them out evenly */
+    WINDOW = 128
+};
 
 struct md {
     const struct scene *scene;

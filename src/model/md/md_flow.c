@@ -36,6 +36,7 @@ static bool has_left(struct md *md, const struct grain *g, double t)
 static void let_out(struct md *md)
 {
     const double t = md_time(md);
+    if (!(md->effects & (EFFECT_OUTFLOW | EFFECT_SCREEN))) return;
     for (uint32_t i = 0; i < md->count; i++) {
         struct grain *g = &md->grains[i];
         if (!has_left(md, g, t)) continue;

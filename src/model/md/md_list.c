@@ -16,6 +16,10 @@
 
 #define NONE UINT32_MAX
 
+/* A loop over grains, or over their links, in which each turn writes only its own. */
+#define SHARED_LOOP                                                                        \
+    _Pragma("omp parallel for num_threads(md->thread_count) if (md->count > STRIP_GRAINS)")
+
 struct md_scratch {
     uint32_t cell_max, fast, slow;      /* cells along the fast and the slow axis */
     bool     x_is_fast;
@@ -55,7 +59,7 @@ bool md_list_create(struct md *md)
     s->links_per_grain = links_per_grain(md->scene, md->skin);
     if ((uint64_t)n * s->links_per_grain > UINT32_MAX / 2) return false;
     md->link_max = n * s->links_per_grain;
-    md->strip_max = n / STRIP_GRAINS + 1;
+    md->strip_max = n / STRIP_GRAINS + STRIPS_SHARED;
     s->cell_max = 2 * n + 64;
     const bool springs = md->springs || md->law.spring;
     return arena_array(arena, &md->links, md->link_max + LINKS_AHEAD)
@@ -87,6 +91,7 @@ static void wrap(struct md *md)
     const double width = box[2] - box[0], height = box[3] - box[1];
     const bool along_x = md->scene->left == BORDER_PERIODIC;
     const bool along_y = md->scene->bottom == BORDER_PERIODIC;
+    SHARED_LOOP
     for (uint32_t i = 0; i < md->count; i++) {
         struct grain *g = &md->grains[i];
         if (along_x) g->x -= width * floor((g->x - box[0]) / width);
@@ -154,14 +159,16 @@ static void sort_grains(struct md *md)
 {
     struct md_scratch *s = md->scratch;
     const uint32_t cells = s->nx * s->ny, old_count = md->count;
-    memset(s->cell_first, 0, (cells + 1) * sizeof *s->cell_first);
+    SHARED_LOOP
     for (uint32_t i = 0; i < old_count; i++) {
         const struct grain *g = &md->grains[i];
-        s->cell_of[i] = NONE;
-        if (g->inverse_mass == 0) continue;
-        s->cell_of[i] = cell_index(s, cell_along(g->x - s->x0, s->per_x, s->nx),
+        s->cell_of[i] = g->inverse_mass == 0 ? NONE
+                      : cell_index(s, cell_along(g->x - s->x0, s->per_x, s->nx),
                                    cell_along(g->y - s->y0, s->per_y, s->ny));
-        s->cell_first[s->cell_of[i] + 1]++;
+    }
+    memset(s->cell_first, 0, (cells + 1) * sizeof *s->cell_first);
+    for (uint32_t i = 0; i < old_count; i++) {
+        if (s->cell_of[i] != NONE) s->cell_first[s->cell_of[i] + 1]++;
     }
     for (uint32_t c = 0; c < cells; c++) s->cell_first[c + 1] += s->cell_first[c];
     md->count = s->cell_first[cells];
@@ -180,6 +187,7 @@ static void sort_grains(struct md *md)
 static void permute(struct md *md)
 {
     struct md_scratch *s = md->scratch;
+    SHARED_LOOP
     for (uint32_t i = 0; i < md->count; i++) {
         s->grains[i] = md->grains[s->order[i]];
         s->halves[i] = md->halves[s->order[i]];
@@ -234,6 +242,7 @@ static void cut_strips(struct md *md)
     const uint32_t wanted = row < STRIP_GRAINS / 8 ? STRIP_GRAINS
                           : row < STRIP_GRAINS_MAX / 8 ? 8 * row : STRIP_GRAINS_MAX;
     uint32_t strips = (md->count + wanted - 1) / wanted;
+    if (strips > 1) strips = (strips + STRIPS_SHARED - 1) / STRIPS_SHARED * STRIPS_SHARED;
     if (strips < 1) strips = 1;
     if (strips > md->strip_max) strips = md->strip_max;
     md->strip_count = strips;

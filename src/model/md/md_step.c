@@ -248,12 +248,12 @@ bool md_step_take(struct md *md)
         struct md_window w;
         struct push *pushes = md->pushes + (size_t)omp_get_thread_num() * md->strip_room;
         if (md->gears) {
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic, 1)
             for (uint32_t t = 0; t < strips; t++) predict_gear(md, t);
         }
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic, 1)
         for (uint32_t t = 0; t < strips; t++) push_cross(md, t, &w);
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic, 1)
         for (uint32_t t = 0; t < strips; t++) sweep(md, t, pushes, &w);
     }
     if (!md->gears) md->steps_here++;

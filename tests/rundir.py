@@ -1,0 +1,126 @@
+"""rundir.py - what the tests of whole runs share: small runs of every model and method, and the
+comparison of two run directories, byte for byte but for wall times.
+
+SPDX-License-Identifier: GPL-3.0-or-later
+"""
+import csv
+import json
+import os
+import struct
+
+# Discs that fall on an obstacle; friction, a phase that changes a key, and a gate that opens.
+DISCS = """
+model = "md";
+until = 1.2;
+box = (0.0, 0.0, 16.0, 12.0);
+gravity = (0.0, -10.0);
+grains = ({ radius = 0.4; restitution = 0.5; density = 1.0; friction = 0.3; });
+placements = ({ region = (3.0, 2.0, 13.0, 11.0); jitter = 0.5; spacing = 1.1; });
+obstacles = ({ shape = "disc"; center = (8.0, 1.0); radius = 0.7; });
+phases = ({ time = 0.5; set = ("gravity=(1.0, -9.0)"); });
+view = { size = (160, 120); };
+output = { frames = 0.1; log = 0.05; maps = 0.4; checkpoint = 0.15; checkpoint_wall = 0.0; };
+"""
+
+_QUICK = ["--quick", "--size", "160x120", "-s", "output.checkpoint_wall=0"]
+DISCS_FILE = "discs.cfg"
+
+# name, scene, options.  Together they have every model and method, and every kind of output:
+# frames coloured by the whole run and at once, dumps with contacts, maps, mean maps, screens.
+CASES = [
+    ("md-linear-verlet", DISCS_FILE, []),
+    ("md-hertz-verlet", DISCS_FILE, ["-s", "md.force=hertz", "-s", "output.dump=true",
+                                 "-s", "output.contacts=true", "-s", "view.forces=true"]),
+    ("md-linear-gear", DISCS_FILE, ["-s", "md.integrator=gear", "-s", "view.range=(0, 5)"]),
+    ("md-hertz-gear", DISCS_FILE, ["-s", "md.integrator=gear", "-s", "md.force=hertz", "-s",
+                               "measure.average=(0.1, 1.1)", "-s", "output.maps=0.05"]),
+    ("md-stream", "obstacle", [*_QUICK, "--model", "md", "--until", "0.004", "-s",
+                               "output.frames=0.001", "-s", "output.checkpoint=0.0008"]),
+    ("ed-tc", "cooling", [*_QUICK, "--model", "ed", "--until", "30", "-s", "output.checkpoint=4"]),
+    ("ed-walls", DISCS_FILE, ["--model", "ed", "-s", "view.range=(0, 5)", "-s", "output.dump=true"]),
+    ("ed-plain", "cooling", [*_QUICK, "--model", "ed", "--until", "20", "-s", "ed.t_c=0", "-s",
+                             "output.checkpoint=3", "-s", "view.range_from=frame"]),
+    ("dsmc-dense", "obstacle", [*_QUICK, "--model", "dsmc", "-s", "output.checkpoint=0.004",
+                                "-s", "output.maps=0.001", "-s", "measure.average=(0.01, 0.03)"]),
+    ("dsmc-plain", "cooling", [*_QUICK, "--model", "dsmc", "--method", "plain", "--until", "30",
+                               "-s", "output.checkpoint=4", "-s", "view.map=density"]),
+    ("dsmc-hsmc", "heap", [*_QUICK, "--model", "dsmc", "--method", "hsmc", "--until", "6", "-s",
+                           "output.checkpoint=1", "-s", "output.maps=2"]),
+    ("lga-gmlg", "hourglass", [*_QUICK, "--model", "lga", "--until", "0.15", "-s",
+                               "output.checkpoint=0.02"]),
+    ("lga-fhp2", "cooling", [*_QUICK, "--model", "lga", "--method", "fhp2", "--until", "20", "-s",
+                             "output.checkpoint=3"]),
+    ("lga-sandpile", "pile", [*_QUICK, "--model", "lga", "--method", "sandpile", "-s",
+                              "output.dump=true"]),
+]
+
+
+def write_scenes(folder):
+    with open(os.path.join(folder, DISCS_FILE), "w", encoding="utf-8") as out:
+        out.write(DISCS)
+
+
+def _fnv(data):
+    value = 14695981039346656037
+    for byte in data:
+        value = (value ^ byte) * 1099511628211 % 2**64
+    return value
+
+
+# What a checkpoint remembers of the clock, and the bytes of the log, which holds wall seconds.
+_TIMES = {_fnv(b"run.wall"), _fnv(b"log.size")}
+_HEADER = struct.Struct("<8sII24sQQQQQ")
+
+
+def _checkpoint(data):
+    """The turn, the scene's text and every record but those that tell of wall time."""
+    fields = _HEADER.unpack_from(data)
+    turn, scene_size = fields[4], fields[5]
+    at = _HEADER.size + scene_size
+    records = []
+    while at < len(data):
+        name, width, count = struct.unpack_from("<QQQ", data, at)
+        size = (width * count + 7) // 8 * 8
+        if name not in _TIMES:
+            records.append((name, width, count, data[at + 24:at + 24 + size]))
+        at += 24 + size
+    return turn, data[_HEADER.size:_HEADER.size + scene_size], records
+
+
+def _manifest(data):
+    told = json.loads(data)
+    for key in ("seconds", "written"):
+        told.pop(key, None)
+    return told
+
+
+def _log(data):
+    rows = list(csv.reader(data.decode().splitlines()))
+    at = rows[0].index("wall_seconds")
+    return [row[:at] + row[at + 1:] for row in rows]
+
+
+def _contents(path):
+    with open(path, "rb") as file:
+        data = file.read()
+    name = os.path.basename(path)
+    if name == "manifest.json":
+        return _manifest(data)
+    if name == "log.csv":
+        return _log(data)
+    return _checkpoint(data) if name.endswith(".checkpoint") else data
+
+
+def files(run):
+    return sorted(os.path.relpath(os.path.join(where, name), run)
+                  for where, _, names in os.walk(run) for name in names)
+
+
+def differences(one, other):
+    """The files that only one run has, or whose contents differ in more than wall times."""
+    mine, its = set(files(one)), set(files(other))
+    found = [name + " is in one only" for name in sorted(mine ^ its)]
+    for name in sorted(mine & its):
+        if _contents(os.path.join(one, name)) != _contents(os.path.join(other, name)):
+            found.append(name + " differs")
+    return found
