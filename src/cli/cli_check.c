@@ -70,7 +70,7 @@ static void tell_summary(const struct setup *setup)
                                                       sizeof text));
 }
 
-/* What a character of the picture stands for: whatever solid is in it, else what is in its middle. */
+/* What a character of the picture stands for: what is solid in it, or else its middle. */
 static char ground_of(const struct simulation *sim, double x, double y, double width, double height)
 {
     enum { POINTS = 8 };
