@@ -32,6 +32,8 @@ static const uint8_t help_options[] = {OPTION_help, OPTION_COUNT};
 static const uint8_t version_options[] = {OPTION_json, OPTION_help, OPTION_COUNT};
 static const uint8_t bench_options[] = {OPTION_json, OPTION_output, OPTION_against, OPTION_threads,
     OPTION_help, OPTION_COUNT};
+static const uint8_t stress_options[] = {OPTION_quick, OPTION_json, OPTION_threads, OPTION_help,
+    OPTION_COUNT};
 
 const struct command cli_commands[] = {
     {"run", "SCENE", "simulates a scene and writes what its `output` asks for",
@@ -76,5 +78,9 @@ const struct command cli_commands[] = {
     {"bench", "[NAME...]", "repeatable timings of models, drawing, encoding and maps",
      "The median of several repeats, in processor seconds.  --against OLD.json prints ratios.\n",
      bench_options, 0, OPTIONS_OPERANDS_MAX, cli_bench},
+    {"stress", "[CASE...]", "runs the hard cases and tells what each of them held",
+     "A case is a scene with a group `stress`: built in as hard/NAME, or a file.  --quick leaves\n"
+     "out the slow ones.  Exit code 4 if one fails; it says which grain, where, and when.\n",
+     stress_options, 0, OPTIONS_OPERANDS_MAX, cli_stress},
     {0}
 };

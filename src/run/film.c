@@ -179,6 +179,7 @@ bool film_draw(struct film *film, const struct grains *grains, uint64_t steps, d
         .field_range = {film->field_range[0], film->field_range[1]},
         .variables = film->variables, .variable_count = FILM_VARIABLES,
     };
+    painter_place(&picture, &film->transform);
     const bool done = painter_frame(film->painter, &picture, &film->image, error);
     if (film->map) field_free(&field);
     return done;
@@ -211,4 +212,16 @@ void film_describe(const struct film *film, double time, struct encoder_job *job
         note(job, "Range", "%s %.9g .. %.9g %s", painter_value_name(&film->view), film->range[0],
              film->range[1], scene_unit(scene, painter_value_dimension(&film->view)));
     }
+}
+
+bool film_save(const struct film *film, double time, const char *path, struct error *error)
+{
+    struct encoder_job job = {0};
+    struct image_note notes[ENCODER_NOTES];
+    film_describe(film, time, &job);
+    for (uint32_t k = 0; k < job.note_count; k++) {
+        notes[k] = (struct image_note){job.notes[k].key, job.notes[k].text};
+    }
+    return image_save(&film->image, path, film->scene->output.png_level, notes, job.note_count,
+                      error);
 }

@@ -15,6 +15,7 @@
 #include "run/manifest.h"
 #include "run/recall.h"
 #include "run/resolved.h"
+#include "run/stand_alone.h"
 #include "run/writer.h"
 
 #include <errno.h>
@@ -78,7 +79,8 @@ static bool settle_scene(struct run *run)
     char path[FILE_PATH_MAX], fresh[FILE_PATH_MAX];
     folder_path(path, run->directory, "scene.cfg");
     folder_path(fresh, run->directory, "scene.cfg.new");
-    if (!scene_write(run->scene, fresh, run->error)) return false;
+    if (!stand_alone_write(run->scene, run->directory, run->request->resume, fresh,
+                           run->error)) return false;
     run->scene_text = load_text(fresh, run->error);
     if (!run->scene_text) return false;
     run->scene_hash = resolved_hash(run->scene_text);

@@ -6,6 +6,7 @@
 
 #include "model/ed/ed.h"
 #include "model/ed/ed_epoch.h"
+#include "model/ed/ed_shear.h"
 #include "model/ed/ed_watch.h"
 
 #include <math.h>
@@ -238,7 +239,7 @@ static void let_in(struct ed *ed, double t)
 
 double ed_change_next(const struct ed *ed)
 {
-    return fmin(fmin(rate_end(ed), wall_change(ed)), inflow_due(ed));
+    return fmin(fmin(rate_end(ed), wall_change(ed)), fmin(inflow_due(ed), ed_shear_due(ed)));
 }
 
 void ed_change_apply(struct ed *ed, double t)
@@ -256,6 +257,10 @@ void ed_change_apply(struct ed *ed, double t)
         ed->clock.now = fmax(ed->clock.now, ed_since_epoch(&ed->clock, t));
         ed_epoch_begin(ed);
         ed_epoch_predict(ed);
+    }
+    if (ed_shear_due(ed) <= t) {
+        ed->clock.now = fmax(ed->clock.now, ed_since_epoch(&ed->clock, t));
+        ed_shear_slide(ed);
     }
     if (inflow_due(ed) <= t) {
         ed->clock.now = fmax(ed->clock.now, ed_since_epoch(&ed->clock, t));

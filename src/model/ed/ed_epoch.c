@@ -10,6 +10,7 @@
 #include "model/ed/ed_epoch.h"
 
 #include "model/ed/ed.h"
+#include "model/ed/ed_shear.h"
 
 #include <math.h>
 
@@ -75,6 +76,7 @@ void ed_epoch_shift(struct ed *ed)
         if (ed->spin) ed->angle[i] = remainder(ed->angle[i] + t * ed->spin[i], 2 * M_PI);
     }
     clock_add(&ed->clock, t);
+    ed_shear_shift(ed, t);
     ed->clock.stuck_mark -= t;
     ed->clock.now = 0;
 }
