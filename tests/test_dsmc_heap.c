@@ -5,7 +5,6 @@
  * Units: d = g = 1.  A heap grows by one grain a time unit (paper 000, 3.4).  `slow` as the first
  * argument runs the long ones.
  */
-#include "measure/heap.h"
 #include "scenes.h"
 
 #include <omp.h>
@@ -205,37 +204,6 @@ static void test_sand_runs_out_of_a_funnel(void **unused)
     scenes_end(run);
 }
 
-static void test_a_heap_of_thirty_thousand_has_the_tail_of_equation_8(void **unused)
-{
-    (void)unused;
-    enum { COUNT = 30500, HALF = 500 };
-    struct scenes_run *run = scenes_begin(
-        "until = 1e6; seed = 1; box = [-500.0, 0.0, 500.0, 172.0]; left = \"open\";"
-        "right = \"open\"; top = \"open\"; gravity = (0.0, -1.0);"
-        "grains = ({ radius = 0.5; density = 1.2732395447351628; restitution = 0.9; });"
-        "sources = ({ position = (0.0, 170.0); width = 1.0; rate = 1.0; count = 30500; });"
-        "dsmc = { method = \"hsmc\"; reach = [1, 3]; };", "dsmc");
-    scenes_advance(run, COUNT + 500);
-    struct grains grains = scenes_look(run);
-    CHECK(grains.count == COUNT);
-    struct heap heap;
-    struct heap_tail tail;
-    struct error error = {0};
-    CHECK(heap_create(&grains, -HALF, HALF, HALF, 0, 0.1, &heap, &error));
-    CHECK(heap_tail(&heap, 2, 0.95, &tail, &error));
-    print_message("m %.3f(%.3f), l/r %.1f(%.1f), h_m %.1f, rms %.1f, of a line %.1f\n", tail.slope,
-                  tail.slope_error, tail.tail, tail.tail_error, tail.height, tail.rms,
-                  tail.rms_line);
-    /* An independent program: m = 0.54, l/r = 15 d, rms 4.8 d.  The slope of a heap of 3000 is given
-     * to 6 %; the tail is a fourteenth of the foot, 270 d, so 2 % of that make a third of it. */
-    CHECK_NEAR(tail.slope, 0.54, 0.06 * 0.54);
-    CHECK_NEAR(tail.tail, 15, 5);
-    CHECK(tail.rms < 0.5 * tail.rms_line);                      /* it is a tail, no line */
-    heap_free(&heap);
-    grains_free(&grains);
-    scenes_end(run);
-}
-
 static uint64_t pour_with(int threads, struct tally_body *body)
 {
     omp_set_num_threads(threads);
@@ -278,7 +246,6 @@ int main(int argc, char **argv)
     };
     const struct CMUnitTest slow[] = {
         cmocka_unit_test(test_a_large_heap_has_the_known_slope),
-        cmocka_unit_test(test_a_heap_of_thirty_thousand_has_the_tail_of_equation_8),
         cmocka_unit_test(test_grains_that_roll_less_far_make_a_steeper_heap),
     };
     if (argc > 1 && strcmp(argv[1], "slow") == 0) return cmocka_run_group_tests(slow, NULL, NULL);
