@@ -78,7 +78,7 @@ static void test_energy_lost_is_what_the_collisions_took(void **unused)
 static void test_many_events_at_one_time_are_all_carried_out(void **unused)
 {
     (void)unused;
-    /* Rows of a perfect lattice fly against each other: all their blows fall on the same instant. */
+    /* Rows of a perfect lattice fly against each other: all blows fall on one instant. */
     struct scenes_run *run = scenes_begin("until = 100.0; box = [0.0, 0.0, 30.0, 8.0];"
         "grains = ({ radius = 0.5; restitution = 1.0; });"
         "placements = ({ region = [0.0, 0.0, 30.0, 1.25]; kind = \"square\"; spacing = 1.25;"
