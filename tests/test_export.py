@@ -52,7 +52,9 @@ def module(name):
 numpy = module("numpy")
 
 
-class Export(unittest.TestCase):
+class Shared(unittest.TestCase):
+    """One run with dumps, and what it is exported to."""
+
     @classmethod
     def setUpClass(cls):
         if numpy is None:
@@ -101,6 +103,9 @@ class Export(unittest.TestCase):
     def same(self, found, expected):
         numpy.testing.assert_array_equal(numpy.asarray(found), expected)
 
+
+
+class Export(Shared):
     def test_the_reference_is_worth_comparing_with(self):
         self.assertEqual(len(self.frames), 7)
         self.assertGreater(len(self.frames[-1]), len(self.frames[0]))       # the source has begun
@@ -289,6 +294,134 @@ run 0 pre no post no
         self.say("export", "kept", "--to", "extxyz", "--frame", "2", "-o", "lone")
         with open(self.path("lone/grains.xyz"), encoding="utf-8") as text:
             self.assertEqual(sum(1 for line in text), len(self.frames[2]) + 2)
+
+
+# The species of DISCS, with room for every radius; the grains come from a file.
+IMPORTED = """
+model = "md";
+until = 0.1;
+box = (-2.0, 1.0, 14.0, 13.0);
+left = "periodic"; right = "periodic";
+grains = ({ name = "a"; radius = (0.3, 0.4); restitution = 0.5; friction = 0.3; },
+          { name = "b"; radius = 0.3; restitution = 0.5; friction = 0.3; density = 2.0; });
+placements = ({ kind = "file"; file = "FILE"; });
+md = { dt = 2e-5; };
+output = { frames = 0.1; dump = true; };
+view = { size = (64, 48); range = (0, 5); };
+"""
+
+
+class Import(Shared):
+    """Grains that another program, or an earlier run, has written are where a scene begins."""
+
+    def begin(self, name, changes=()):
+        """The grains with which a scene begins that takes them from this file."""
+        scene = self.path("scenes", os.path.basename(name) + ".cfg")
+        os.makedirs(self.path("scenes"), exist_ok=True)
+        shutil.copy(self.path(name), self.path("scenes"))
+        text = IMPORTED.replace("FILE", os.path.basename(name))
+        for old, new in changes:
+            text = text.replace(old, new)
+        with open(scene, "w", encoding="utf-8") as out:
+            out.write(text)
+        run = scene[:-4] + "-run"
+        self.say("run", scene, "-o", run, "--until", "1e-5", "--force")
+        grains = numpy.load(run + "/dump/000000.npy")
+        return grains[numpy.argsort(grains["id"])]
+
+    def check(self, found, frame, exact=True):
+        self.assertEqual(len(found), len(frame))
+        for name in ("x", "y", "vx", "vy", "spin", "radius", "species"):
+            if exact and name != "x":
+                self.same(found[name], frame[name])
+            else:       # x is folded into the periodic box
+                difference = found[name] - frame[name]
+                if name == "x":
+                    difference = (difference + 8) % 16 - 8
+                numpy.testing.assert_allclose(difference, 0, atol=1e-12 if exact else 1e-5)
+
+    def test_a_run_goes_on_from_the_csv_or_the_lammps_dump_of_another(self):
+        self.say("export", "kept", "--to", "csv,lammps", "-o", "last", "-t", "0.6")
+        self.check(self.begin("last/grains_000006.csv"), self.frames[-1])
+        self.check(self.begin("last/grains.lammpstrj"), self.frames[-1])
+        self.check(self.begin("out/grains.lammpstrj"), self.frames[-1])     # its last snapshot
+        # The run stands on its own: without the file, its resolved scene gives the same grains.
+        run = self.path("scenes/grains.lammpstrj-run")
+        os.remove(self.path("scenes/grains.lammpstrj"))
+        self.say("run", run + "/scene.cfg", "-o", "again")
+        with open(run + "/dump/000000.npy", "rb") as a, open(self.path("again/dump/000000.npy"),
+                                                             "rb") as b:
+            self.assertEqual(a.read(), b.read())
+
+    def test_a_data_file_that_lammps_wrote_is_read(self):
+        lammps = shutil.which("lmp") or shutil.which("lammps")
+        if not lammps:
+            self.skipTest("lammps is not installed")
+        with open(self.path("in.write"), "w", encoding="utf-8") as out:
+            out.write("""
+dimension 2
+atom_style sphere
+boundary p f p
+region all block -2 14 1 13 -0.4 0.4
+create_box 2 all
+lattice sq 1.0
+region part block 0 9 3 6 -0.1 0.1
+create_atoms 1 region part
+create_atoms 2 single 5.0 10.0 0.0 units box
+set type 1 diameter 0.7
+set type 2 diameter 0.6
+velocity all create 1.0 4711 dist gaussian
+set type 2 omega 0 0 3.5
+write_data written.data
+dump now all custom 1 written.dump id type xs ys vx vy omegaz radius
+dump_modify now format float %.12g
+run 0 pre no post no
+""")
+        done = subprocess.run([lammps, "-in", "in.write", "-log", "none"], cwd=self.folder,
+                              capture_output=True, text=True, timeout=120, check=False,
+                              env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1",
+                                       OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        data = self.begin("written.data")
+        self.assertEqual(len(data), 41)
+        last = data[-1]
+        self.assertEqual((last["x"], last["y"], last["radius"], last["species"]), (5, 10, 0.3, 1))
+        self.assertAlmostEqual(last["spin"], 3.5)       # LAMMPS keeps the angular momentum
+        self.same(data["radius"][:40], numpy.full(40, 0.35))
+        self.assertGreater(numpy.abs(data["vx"]).max(), 0)
+        self.check(self.begin("written.dump"), data, exact=False)
+
+    def test_what_a_file_may_leave_out_the_scene_says(self):
+        with open(self.path("few.csv"), "w", encoding="utf-8") as out:
+            out.write("y, x\n2.0, 0.0\n# a comment\n3.0, 4.5\n")
+        found = self.begin("few.csv", [('"few.csv"', '"few.csv"; velocity = (1.0, 2.0); grains = "b"')])
+        self.same(found["x"], [0, 4.5])
+        self.same(found["vy"], [2, 2])
+        self.same(found["radius"], [0.3, 0.3])
+        self.same(found["species"], [1, 1])
+
+    def test_a_file_that_does_not_fit_its_scene_says_why(self):
+        cases = {"x,y,radius\n1,2,0.9\n": "radius 0.9",
+                 "x,y\n1,99\n": "outside",
+                 "x,y,species\n1,2,7\n": "species 7",
+                 "x,y\n1,2\n1.1,2\n": "overlaps another",
+                 "x,y\n1,1.01\n": "in a wall",
+                 "x,y\n1\n": "too few numbers",
+                 "x,y\n1,zwei\n": ":2: a number is malformed",
+                 "a,b\n1,2\n": "no columns called x and y",
+                 "": "no grain is in it"}
+        scene = self.path("bad.cfg")
+        with open(scene, "w", encoding="utf-8") as out:
+            out.write(IMPORTED.replace("FILE", "bad.csv"))
+        for text, words in cases.items():
+            with open(self.path("bad.csv"), "w", encoding="utf-8") as out:
+                out.write(text)
+            done = self.call("run", scene, "-o", "never")
+            self.assertEqual(done.returncode, 3, text)
+            self.assertIn(words, done.stderr)
+            self.assertIn("bad.csv", done.stderr)
+        os.remove(self.path("bad.csv"))
+        self.assertIn("cannot open", self.call("run", scene, "-o", "never").stderr)
 
 
 if __name__ == "__main__":

@@ -19,18 +19,38 @@ struct figure_job;
  * (003), stream (004). */
 #define FIGURES(X)                                                                              \
     X("simplified-3",   cooling_restitutions, "cooling for several r by DSMC")                  \
+    X("simplified-4",   bagnold_force,        "Bagnold: F(v) of two plates by DSMC")            \
     X("simplified-5",   cooling_three_models, "K(t) by ED, DSMC and HSMC against eq. 4")        \
     X("simplified-6",   clusters_factor_three, "S(k) by ED, DSMC and HSMC at several times")    \
+    X("simplified-7",   heaps_hsmc_snapshot,  "a heap by HSMC")                                 \
+    X("simplified-8",   heaps_hsmc_profile,   "profile of an HSMC heap against eq. 8")          \
+    X("simplified-lga-heap", heaps_lattice_profile, "profile of a lattice gas heap against eq. 8") \
+    X("simplified-lga-pipe", lattice_pipe,    "density waves in a pipe: spectrum, space-time")  \
     X("cooperative-2",  cooling_two_models,   "K(t) by ED and DSMC against eq. 18")             \
+    X("cooperative-3",  collisions_impact_times, "impact parameters P(b/d) at several times")   \
+    X("cooperative-4",  collisions_impact_restitutions, "P(b/d) for several r, dense")          \
+    X("cooperative-5",  collisions_stress,    "velocities and the stress's principal axes")     \
     X("cooperative-6",  clusters_pair,        "pair correlation g(r/d) by ED and DSMC")         \
     X("cooperative-7",  clusters_factor_two,  "S(k) by ED and DSMC at several times")           \
     X("cooperative-8",  clusters_restitutions, "K(C/N) and (Kx - Kz)/K for several r")          \
     X("cooperative-9",  clusters_cut_off,     "K(t) and K(C/N) for t_c = 1e-10 to 1e-3 s")      \
     X("cooperative-10", clusters_growth,      "K(t), C/N and elastic C/N of the large gas")     \
     X("cooperative-11", clusters_snapshots,   "snapshots coloured by collisions per time")      \
+    X("cooperative-12", collisions_frequency, "collision frequencies P(Nc) with fits")          \
+    X("cooperative-13", pipe_snapshots,       "an arch in a pipe, snapshots")                   \
+    X("cooperative-14", pipe_frequency,       "P(Nc) in the pipe before and with arches")       \
+    X("gmlg-4",         lattice_hourglass,    "an hourglass of the lattice gas")                \
+    X("stream-2",       scattering_mass,      "mass scattered by angle, m(Theta)")              \
+    X("stream-3",       scattering_spin,      "angular momentum by angle, L(Theta)")            \
+    X("stream-4",       scattering_momentum,  "momentum by angle, |p|(Theta)")                  \
     X("stream-5",       stream_density,       "force against the density of the stream")        \
     X("stream-6",       stream_radius,        "force against the size of round and flat obstacles") \
-    X("stream-9",       stream_speed,         "force against the speed of the stream")
+    X("stream-7",       corona_round,         "the corona before a round obstacle")             \
+    X("stream-8",       corona_flat,          "the corona before a flat obstacle")              \
+    X("stream-9",       stream_speed,         "force against the speed of the stream")          \
+    X("stream-10",      corona_speeds,        "snapshots at 2000, 700 and 200 cm/s")            \
+    X("stream-11",      corona_gap,           "the gap between obstacle and corona")            \
+    X("stream-12",      corona_fields,        "density and temperature for three radii")
 
 struct figure {
     const char *name, *title;

@@ -39,8 +39,8 @@ void flow_wish(struct flow *flow, struct lab_wish *wish)
     flow->start = settling_ways * (source + flow->radius) / flow->speed;
     flow->end = flow->start + flow->rows * flow->row;
     *wish = (struct lab_wish){.scene = flow->flat ? "obstacle-flat" : "obstacle"};
-    /* Grains of 0.16 cm at 2000 cm/s overlap by 0.3 of a radius under Table I. */
-    lab_set(wish, "overlap_limit=0.5");
+    /* Grains at 2000 cm/s overlap by half a radius under Table I. */
+    lab_set(wish, "overlap_limit=0.8");
     lab_set(wish, "until=%.6g", flow->end);
     lab_set(wish, "box=[%g,%g,%g,%g]", -fmax(source + 1, reach), -reach, reach, reach);
     lab_set(wish, "sources.[0].position=(%g,0)", -source);

@@ -44,7 +44,7 @@ double distribution_law_share(enum distribution_law law, double parameter, uint3
     const double p = parameter;
     switch (law) {
     case DISTRIBUTION_poisson: return exp(c * log(p) - p - lgamma(c + 1.0));
-    case DISTRIBUTION_exponential: return exp(-c / p) * -expm1(-1 / p);
+    case DISTRIBUTION_exponential: return exp(-(double)c / p) * -expm1(-1 / p);
     case DISTRIBUTION_power: return p / ((p + c) * (p + c + 1));
     case DISTRIBUTION_LAW_COUNT: break;
     }
@@ -59,7 +59,7 @@ static double tail_share(enum distribution_law law, double p, uint32_t c)
     case DISTRIBUTION_poisson:
         for (uint32_t k = 0; k < c; k++) sum += distribution_law_share(law, p, k);
         return 1 - sum;
-    case DISTRIBUTION_exponential: return exp(-c / p);
+    case DISTRIBUTION_exponential: return exp(-(double)c / p);
     case DISTRIBUTION_power: return p / (p + c);
     case DISTRIBUTION_LAW_COUNT: break;
     }

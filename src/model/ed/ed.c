@@ -298,6 +298,24 @@ static void ed_observe(const void *state, struct grains *out)
     }
 }
 
+static void ed_push(void *state, const struct impulse *impulse)
+{
+    struct ed *ed = state;
+    const double t = ed_since_epoch(&ed->clock, ed->clock.present);
+    for (uint32_t i = 0; i < ed->count; i++) {
+        struct ed_grain *g = &ed->grains[i];
+        const double x = g->x + t * (g->vx + 0.5 * ed->gx * t);
+        const double y = g->y + t * (g->vy + 0.5 * ed->gy * t);
+        const double share = impulse_share(impulse, x, y);
+        if (share == 0) continue;
+        g->vx += share * impulse->vx;           /* as if it had always flown so: ed.h */
+        g->vy += share * impulse->vy;
+        g->x -= share * impulse->vx * t;
+        g->y -= share * impulse->vy * t;
+    }
+    start_anew(ed);
+}
+
 static void ed_archive(void *state, struct archive *archive)
 {
     struct ed *ed = state;
@@ -319,7 +337,7 @@ static void ed_archive(void *state, struct archive *archive)
     archive_array(archive, "ed.rate", ed->rate, ed->count);
     archive_array(archive, "ed.begun", ed->begun, ed->count);
     archive_array(archive, "ed.elastic", ed->elastic, ed->count);
-    archive_array(archive, "ed.cursors", ed->cursors, ed->scene->source_count);
+    source_archive(ed->scene, ed->cursors, archive);
     tally_archive(&ed->tally, archive);
     const bool same = !loads || ed->clock.fingerprint == own;
     if (same) {
@@ -401,6 +419,7 @@ const struct model model_ed = {
     .destroy  = ed_destroy,
     .advance  = ed_advance,
     .observe  = ed_observe,
+    .push     = ed_push,
     .archive  = ed_archive,
     .count    = ed_count,
     .tally    = ed_tally,

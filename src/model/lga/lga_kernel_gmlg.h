@@ -26,9 +26,17 @@ INLINE void N(subtract_bit)(vec number[3], vec bit)
 
 INLINE vec N(is_zero)(const vec number[3]) { return ~(number[0] | number[1] | number[2]); }
 
+INLINE bool N(any)(vec bits)
+{
+    uint64_t sum = 0;
+    for (int k = 0; k < KERNEL_WIDTH; k++) sum |= bits[k];
+    return sum != 0;
+}
+
 /* How many of the planes are set. */
 INLINE uint64_t N(count_six)(const vec planes[6])
 {
+    if (!N(any)(planes[0] | planes[1] | planes[2] | planes[3] | planes[4] | planes[5])) return 0;
     vec sum[3] = {{0}};
     for (int d = 0; d < 6; d++) N(add_bit)(sum, planes[d]);
     return N(count)(sum[0]) + 2 * N(count)(sum[1]) + 4 * N(count)(sum[2]);
@@ -332,7 +340,7 @@ INLINE void N(let_in)(vec waiting[6], const vec room[3], const struct N(admissio
     const vec two = one & (room[1] | room[2]) & (excess[1] | excess[2]);
     const vec three = two & count[2] & count[1] & room[0] & room[1];
     const vec again[3] = {one, two, three};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3 && N(any)(again[k]); k++) {
         const vec zero = {0};
         const struct N(pick) pick = {k < 2 ? dice->third[p] : zero, k < 2 ? dice->fifth[p] : zero,
                                      dice->coin[2 * k][p], dice->coin[2 * k + 1][p]};
