@@ -12,6 +12,8 @@ import sys
 import tempfile
 import unittest
 
+import verdict
+
 PROGRAM = os.path.abspath(sys.argv.pop(1))
 
 
@@ -102,10 +104,4 @@ class Tools(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    program = unittest.main(exit=False, verbosity=1)
-    result = program.result
-    failed = len(result.failures) + len(result.errors)
-    print(f"[  PASSED  ] {result.testsRun - failed - len(result.skipped)} test(s).")
-    if failed:
-        print(f"[  FAILED  ] {failed} test(s).")
-    sys.exit(1 if failed else 0)
+    verdict.run()
