@@ -17,6 +17,10 @@ static const uint8_t run_options[] = {OPTION_output, SIMULATING, OPTION_resume, 
 static const uint8_t frame_options[] = {OPTION_output, OPTION_time, LOOK, SIMULATING, ALWAYS};
 static const uint8_t movie_options[] = {OPTION_output, OPTION_side_by_side, OPTION_fps,
     OPTION_every, LOOK, SIMULATING, ALWAYS};
+static const uint8_t live_options[] = {OPTION_web, OPTION_commands, OPTION_output, OPTION_force, LOOK,
+    SIMULATING, ALWAYS};
+static const uint8_t replay_options[] = {OPTION_output, OPTION_force, OPTION_threads, OPTION_help,
+    OPTION_COUNT};
 static const uint8_t map_options[] = {OPTION_output, OPTION_field, OPTION_time, OPTION_average,
     OPTION_as, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_size, OPTION_zoom, OPTION_theme,
     OPTION_colormap, OPTION_scale, OPTION_map_range, OPTION_title, SIMULATING, ALWAYS};
@@ -24,6 +28,8 @@ static const uint8_t export_options[] = {OPTION_to, OPTION_output, OPTION_frame,
     OPTION_field, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_set, OPTION_help, OPTION_COUNT};
 static const uint8_t figure_options[] = {OPTION_small, OPTION_output, OPTION_plot_as, OPTION_json,
     ALWAYS};
+static const uint8_t plot_options[] = {OPTION_of, OPTION_output, OPTION_plot_as, OPTION_time,
+    SIMULATING, ALWAYS};
 static const uint8_t check_options[] = {OPTION_explain, SIMULATING, OPTION_help, OPTION_COUNT};
 static const uint8_t scenes_options[] = {OPTION_json, OPTION_help, OPTION_COUNT};
 static const uint8_t info_options[] = {OPTION_frame, OPTION_time, OPTION_grain, OPTION_at,
@@ -33,7 +39,7 @@ static const uint8_t sweep_options[] = {OPTION_vary, OPTION_random, OPTION_repea
     ALWAYS};
 static const uint8_t help_options[] = {OPTION_help, OPTION_COUNT};
 static const uint8_t version_options[] = {OPTION_json, OPTION_help, OPTION_COUNT};
-static const uint8_t bench_options[] = {OPTION_json, OPTION_output, OPTION_against, OPTION_threads,
+static const uint8_t bench_options[] = {OPTION_effects, OPTION_json, OPTION_output, OPTION_against, OPTION_threads,
     OPTION_help, OPTION_COUNT};
 static const uint8_t stress_options[] = {OPTION_quick, OPTION_json, OPTION_threads, OPTION_help,
     OPTION_COUNT};
@@ -51,6 +57,16 @@ const struct command cli_commands[] = {
      "-o NAME.mp4, .webm or .gif; ffmpeg must be installed.  --side-by-side puts several models\n"
      "(--model md,lga) or several scenes and runs into one picture; --size is that of one panel.\n",
      movie_options, 1, OPTIONS_OPERANDS_MAX, cli_movie},
+    {"live", "SCENE|RUN", "watches and steers a simulation while it runs",
+     "--web prints an address for a browser; --commands FILE carries out a file of commands, and\n"
+     "ends unless --web goes on.  A run goes on from its newest checkpoint.  The session is\n"
+     "written down in a directory, NAME-live unless -o says another; `sandreel replay` repeats\n"
+     "it.  docs/live.md lists the commands.\n",
+     live_options, 1, 1, cli_live},
+    {"replay", "RUN", "repeats a live session from its log, to the same bytes",
+     "Writes beside it, RUN-replay unless -o says another.  Exit code 4 if it comes to another\n"
+     "state.\n",
+     replay_options, 1, 1, cli_replay},
     {"map", "SCENE|RUN", "field maps: density, velocity, granular temperature, ...",
      "A snapshot at -t (default: the end), or the mean over --average T1:T2.\n",
      map_options, 1, 1, cli_map},
@@ -65,6 +81,11 @@ const struct command cli_commands[] = {
      "into the directory figures unless -o says another: pictures, a table of every curve, and\n"
      "gnuplot's script.  Exit code 4 if a verdict is other than `agrees`.\n",
      figure_options, 0, OPTIONS_OPERANDS_MAX, cli_figure},
+    {"plot", "SCENE|RUN", "plots what a run measured, as PNG, SVG, PDF or in the terminal",
+     "--of energy, contacts, flux, force, stress, impact, frequency, scattering need the tables of a\n"
+     "run; --of anisotropy, structure, pair, heap look at grains, at -t or at the end.  The table\n"
+     "and gnuplot's script stay beside the picture, in the run's directory unless -o says another.\n",
+     plot_options, 1, 1, cli_plot},
     {"check", "SCENE", "tests a scene and simulates nothing", "Exit code 3 if it has errors.\n",
      check_options, 1, 1, cli_check},
     {"scenes", "", "lists the built-in scenes and the models that can run each", "",
@@ -97,7 +118,7 @@ const struct command cli_commands[] = {
      "The median of several repeats, in processor seconds.  --against OLD.json prints ratios.\n",
      bench_options, 0, OPTIONS_OPERANDS_MAX, cli_bench},
     {"stress", "[CASE...]", "runs the hard cases and tells what each of them held",
-     "A case is a scene with a group `stress`: built in as hard/NAME, or a file.  --quick leaves\n"
+     "A case is a scene with a group `hard`: built in as hard/NAME, or a file.  --quick leaves\n"
      "out the slow ones.  Exit code 4 if one fails; it says which grain, where, and when.\n",
      stress_options, 0, OPTIONS_OPERANDS_MAX, cli_stress},
     {0}

@@ -37,8 +37,10 @@ static void help_command(const struct command *command)
         const struct option_row *row = &options_table[*id];
         char left[64], letter[8] = "    ";
         if (row->letter) snprintf(letter, sizeof letter, "-%c, ", row->letter);
-        snprintf(left, sizeof left, "%s--%s%s%s", letter, row->name, row->value ? " " : "",
-                 row->value ? row->value : "");
+        const bool optional = row->form == FORM_OPTIONAL;
+        snprintf(left, sizeof left, "%s--%s%s%s%s", letter, row->name,
+                 optional ? "[=" : row->value ? " " : "", row->value ? row->value : "",
+                 optional ? "]" : "");
         printf("  %-26s %s\n", left, row->doc);
     }
 }

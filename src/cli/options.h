@@ -15,7 +15,8 @@
 #include <stdint.h>
 
 /* How the value of an option that sets a key is written there. */
-enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM_ON };
+enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM_ON,
+                   FORM_OPTIONAL };     /* sets no key; --NAME or --NAME=VALUE */
 
 /* X(id, "long", letter or 0, "VALUE" or NULL, "scene key" or NULL, form, "what it does") */
 #define OPTIONS(X)                                                                              \
@@ -71,6 +72,7 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
       "mean over this time; default: a snapshot")                                               \
     X(as,        "as",        0,   "LIST",  NULL, FORM_PLAIN, "formats: png,npy,vti,csv")       \
     X(plot_as,   "as",        0,   "LIST",  NULL, FORM_PLAIN, "formats: png,svg,pdf,text")      \
+    X(of,        "of",        0,   "WHAT",  NULL, FORM_PLAIN, "what to plot: energy, pair, ...") \
     X(small,     "quick",     0,   NULL,    NULL, FORM_PLAIN,                                   \
       "reduced numbers: each figure within a minute")                                           \
     X(to,        "to",        0,   "LIST",  NULL, FORM_PLAIN,                                   \
@@ -87,11 +89,17 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
       "only every N-th point, from the I-th on")                                                \
     X(explain,   "explain",   0,   NULL,    NULL, FORM_PLAIN,                                   \
       "which effects are on, and which off")                                                    \
+    X(effects,   "effects",   0,   NULL,    NULL, FORM_PLAIN,                                   \
+      "time and bytes per grain with each effect alone, all, none")                             \
     X(frame,     "frame",     0,   "N",     NULL, FORM_PLAIN,                                   \
       "number of a frame; default: the last")                                                   \
     X(grain,     "grain",     0,   "ID",    NULL, FORM_PLAIN, "tells about one grain")          \
     X(at,        "at",        0,   "X,Y",   NULL, FORM_PLAIN,                                   \
       "tells about the grain nearest to a point")                                               \
+    X(commands,  "commands",  0,   "FILE",  NULL, FORM_PLAIN,                                   \
+      "carries out the commands of a file")                                                     \
+    X(web,       "web",       0,   "PORT",  NULL, FORM_OPTIONAL,                                \
+      "in a browser: prints an address of this machine alone; any free port if none is given")  \
     X(json,      "json",      0,   NULL,    NULL, FORM_PLAIN, "prints one JSON document")       \
     X(against,   "against",   0,   "OLD.json", NULL, FORM_PLAIN,                                \
       "prints ratios to an earlier bench")                                                      \

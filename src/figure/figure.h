@@ -25,6 +25,7 @@ struct figure_job;
     X("simplified-7",   heaps_hsmc_snapshot,  "a heap by HSMC")                                 \
     X("simplified-8",   heaps_hsmc_profile,   "profile of an HSMC heap against eq. 8")          \
     X("simplified-lga-heap", heaps_lattice_profile, "profile of a lattice gas heap against eq. 8") \
+    X("simplified-lga-pipe", lattice_pipe,    "density waves in a pipe: spectrum, space-time")  \
     X("cooperative-2",  cooling_two_models,   "K(t) by ED and DSMC against eq. 18")             \
     X("cooperative-3",  collisions_impact_times, "impact parameters P(b/d) at several times")   \
     X("cooperative-4",  collisions_impact_restitutions, "P(b/d) for several r, dense")          \

@@ -64,7 +64,9 @@ bool stream_density(struct figure_job *job, struct error *error)
         const double scale = job->quick ? (111 * 0.5 + 18) / (111 + 18.0) : 1;
         figure_near(job, "slope dF/d rho [dyn]", line.slope, 125e3 * scale,
                     doubt(job, 125e3 * scale, 1.5 * worst.error));
-        figure_hold(job, fabs(line.offset) < 0.1 * at_one,
+        /* The paper's own fit has 0.011; forces known to 2 % (4 % in the quick form) at densities from
+         * 0.2 on leave the offset open by three times that. */
+        figure_hold(job, fabs(line.offset) < (job->quick ? 0.15 : 0.08) * at_one,
                     "linear: F(0)/F(1) = %.3f of the fit", line.offset / at_one);
     }
     figure_choose(job, "R_ob = 1 cm, v = 500 cm/s belong to eq. 15 (measured; the paper does not "
