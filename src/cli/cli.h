@@ -22,6 +22,7 @@ int cli_info(const struct options *options);
 int cli_help(const struct options *options);
 int cli_version(const struct options *options);
 int cli_bench(const struct options *options);
+int cli_cost(const struct options *options);
 int cli_stress(const struct options *options);
 
 #endif
