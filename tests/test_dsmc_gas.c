@@ -207,6 +207,20 @@ static double sheared_temperature(double rate)
     return sum / (LAST - FIRST) / (rate * rate);
 }
 
+static void test_the_dense_form_is_not_used_between_sheared_borders(void **unused)
+{
+    (void)unused;
+    struct scenes_run *run = begin_gas(60, 0.9, "method = \"dense\"; }; shear_rate = 1.0; md = {");
+    const struct dsmc_settings *settings = scene_settings(run->scene, "dsmc");
+    CHECK(settings->method == DSMC_PLAIN);
+    CHECK(run->findings.count == 1 && strstr(run->findings.list[0].text, "plain is taken"));
+    scenes_end(run);
+    run = begin_gas(60, 0.9, "method = \"dense\";");
+    settings = scene_settings(run->scene, "dsmc");
+    CHECK(settings->method == DSMC_DENSE && run->findings.count == 0);
+    scenes_end(run);
+}
+
 static void test_uniform_shear_heats_as_the_square_of_its_rate(void **unused)
 {
     (void)unused;
@@ -281,6 +295,7 @@ int main(void)
         cmocka_unit_test(test_displaced_grains_have_the_pressure_of_discs),
         cmocka_unit_test(test_a_wall_feels_the_pressure_of_the_gas),
         cmocka_unit_test(test_a_cooling_gas_follows_hard_discs),
+        cmocka_unit_test(test_the_dense_form_is_not_used_between_sheared_borders),
         cmocka_unit_test(test_uniform_shear_heats_as_the_square_of_its_rate),
         cmocka_unit_test(test_rough_elastic_grains_share_energy_with_their_spins),
         cmocka_unit_test(test_the_bytes_do_not_depend_on_the_number_of_threads),

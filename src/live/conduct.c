@@ -122,9 +122,10 @@ bool conduct_line(struct session *session, const char *text, struct error *error
     const uint64_t steps_left = session->steps_left;
     if (!session_settle(session, error) && !returns) return false;
     session->steps_left = steps_left;
-    const struct counters then = simulation_count(&session->sim);
+    const uint64_t steps = simulation_count(&session->sim).steps;
+    const double time = session->reached;
     return deeds[line.verb](session, &line, error)
-        && journal_line(session, then.time, then.steps, text + strspn(text, " "), error);
+        && journal_line(session, time, steps, text + strspn(text, " "), error);
 }
 
 /* ---- files of commands -------------------------------------------------------------------- */

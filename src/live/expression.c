@@ -39,7 +39,8 @@ static bool takes(struct reader *reader, const char *token)
     reader->at += strspn(reader->at, " ");
     const size_t length = strlen(token);
     if (reader->failed || strncmp(reader->at, token, length) != 0) return false;
-    if (isalpha((unsigned char)token[0]) && isalnum((unsigned char)reader->at[length])) return false;
+    const bool word = isalpha((unsigned char)token[0]);
+    if (word && isalnum((unsigned char)reader->at[length])) return false;
     reader->at += length;
     return true;
 }
@@ -53,7 +54,9 @@ static double read_name(struct reader *reader)
            || reader->at[length] == ']') {
         length++;
     }
-    if (length == 0) return fail(reader, *reader->at ? "no number or name" : "something is missing");
+    if (length == 0) {
+        return fail(reader, *reader->at ? "no number or name" : "something is missing");
+    }
     if (length >= sizeof name) return fail(reader, "too long a name");
     memcpy(name, reader->at, length);
     name[length] = 0;

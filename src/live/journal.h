@@ -6,8 +6,8 @@
  *     0.25 12500 set gravity (1, -9.81)
  *     # end 0.5 25000 9f0c3a...             time, steps and the hash of the last state
  *
- * A line holds the time and the steps at which its command was given.  Going on, pausing and
- * asking leave no line, for they change nothing.
+ * A line holds the time that had been reached when its command was given, and the steps it took.
+ * Going on, pausing and asking leave no line, for they change nothing.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */

@@ -19,7 +19,8 @@ static bool append(struct keeper *keeper, const struct simulation *sim, uint64_t
         keeper->capacity = capacity;
     }
     struct keeper_state *state = &keeper->states[keeper->count];
-    *state = (struct keeper_state){.time = simulation_count(sim).time, .turn = turn};
+    *state = (struct keeper_state){.time = simulation_count(sim).time, .phase = sim->phase,
+                                   .turn = turn};
     archive_begin_save(&state->archive);
     if (!simulation_save(sim, &state->archive, error)) {
         archive_end(&state->archive);

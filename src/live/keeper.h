@@ -11,7 +11,7 @@
 
 #include "model/simulation.h"
 
-struct keeper_state { double time; uint64_t turn; struct archive archive; };
+struct keeper_state { double time; uint32_t phase; uint64_t turn; struct archive archive; };
 
 struct keeper {
     uint32_t count, capacity;

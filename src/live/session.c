@@ -87,6 +87,14 @@ static bool write_scene(struct session *session, const char *status, struct erro
         && manifest_save(&manifest, session->directory, error);
 }
 
+static bool take_start(struct session *session, const struct session_request *request,
+                       struct error *error)
+{
+    if (!load_start(session, request, error)) return false;
+    session->reached = simulation_count(&session->sim).time;
+    return true;
+}
+
 static double natural_speed(const struct scene *scene)
 {
     const double film = scene->output.frames * scene->output.frame_rate;
@@ -122,7 +130,7 @@ bool session_open(struct session *session, const struct session_request *request
     return timeline_adopt(&session->timeline, scene, error)
         && timeline_copy(&session->timeline, &session->origin, error)
         && simulation_create(&session->sim, session->base.model, scene, error)
-        && load_start(session, request, error)
+        && take_start(session, request, error)
         && keeper_open(&session->keeper, &session->sim, scene->until / kept_states, error)
         && open_folder(session, request, error);
 }
@@ -211,6 +219,8 @@ static bool advance(struct session *session, double t, bool *arrived, struct err
     adapt(session, clock_wall() - start, steps);
     session->version++;
     if (steps > 0) forget_before(session);
+    session->between = outcome != ADVANCE_REACHED;
+    session->reached = session->between ? simulation_count(&session->sim).time : due;
     *arrived = outcome == ADVANCE_REACHED && due == t;
     if (outcome == ADVANCE_BROKEN) return false;
     if (left > 0) {
@@ -255,8 +265,12 @@ bool session_reach(struct session *session, double time, struct error *error)
 
 bool session_settle(struct session *session, struct error *error)
 {
+    double time = session->reached;
     session->steps_left = 0;
-    return session_reach(session, simulation_count(&session->sim).time, error);
+    /* The time of an event is rounded, and the event may lie a hair behind it: whoever goes to
+     * that time at once must find the event done as well. */
+    for (int k = 0; session->between && k < 4; k++) time = nextafter(time, INFINITY);
+    return session_reach(session, time, error);
 }
 
 /* ---- another scene ------------------------------------------------------------------------ */
@@ -292,6 +306,7 @@ bool session_adopt(struct session *session, struct setup *setup, uint32_t phase,
     if (state) {
         simulation_destroy(&session->sim);
         session->sim = fresh;
+        session->reached = simulation_count(&fresh).time;
         forget_before(session);
     } else {
         done = simulation_enter(&session->sim, setup->scene, phase, &session->before, error);
@@ -328,6 +343,7 @@ bool session_restart(struct session *session, const struct timeline *timeline,
     pthread_mutex_lock(&session->scene_lock);
     simulation_destroy(&session->sim);
     session->sim = fresh;
+    session->reached = 0;
     keeper_close(&session->keeper);
     session->keeper = keeper;
     forget_before(session);

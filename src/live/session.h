@@ -68,6 +68,9 @@ struct session {
     double   go_until;          /* INFINITY: no end */
     uint64_t steps_left;        /* 0: goes by time */
     double   speed;             /* simulated time per wall second; INFINITY: no brake */
+    double   reached;           /* the time that the last piece was to reach, and did (a model
+                                 * with coarse ticks may stand before it) ... */
+    bool     between;           /* ... or the model's own: it ended by its budget, between times */
     double   wall;              /* seconds spent on advancing */
     uint64_t version;           /* counts whatever changes the picture */
     uint64_t expected, disappointed;    /* `expect` so far, and how many did not hold */

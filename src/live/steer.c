@@ -8,6 +8,7 @@
  */
 #include "live/steer.h"
 
+#include "live/pins.h"
 #include "live/sight.h"
 
 #include <math.h>
@@ -63,8 +64,15 @@ static bool try_phase(struct session *session, struct timeline *copy,
     }
     if (push && !timeline_push(entry, push, error)) return false;
     const uint32_t phase = timeline_phase(copy, entry);
+    const struct scene *base = session->base.scene;
     struct setup setup;
-    if (!timeline_setup(copy, session->base.scene, NULL, &setup, error)) return false;
+    if (!timeline_setup(copy, base, NULL, &setup, error)) return false;
+    if (pins_needed(base, setup.scene)) {
+        setup_free(&setup);
+        if (!pins_put(copy, base, error) || !timeline_setup(copy, base, NULL, &setup, error)) {
+            return false;
+        }
+    }
     const bool done = keeps_kinds(session, setup.scene->phases[phase], error)
                    && keep_before(session, time, error)
                    && session_adopt(session, &setup, phase, NULL, error);
@@ -219,13 +227,14 @@ bool steer_pour(struct session *session, const struct command_line *line, struct
 
 /* ---- the way back ------------------------------------------------------------------------- */
 
-/* Changes from `time` on are forgotten; what the scene itself brings then comes again. */
-static bool rewound(const struct session *session, double time, struct timeline *copy,
-                    struct error *error)
+/* Changes after that state are forgotten; what the scene itself brings then comes again. */
+static bool rewound(const struct session *session, const struct keeper_state *state,
+                    struct timeline *copy, struct error *error)
 {
     if (!timeline_copy(&session->timeline, copy, error)) return false;
-    timeline_cut(copy, time);
-    return timeline_append(copy, &session->origin, time, error);
+    timeline_cut(copy, state->phase);
+    const double last = state->phase ? copy->entries[state->phase - 1].time : 0;
+    return timeline_append(copy, &session->origin, last, error);
 }
 
 static bool return_to(struct session *session, const struct keeper_state *state,
@@ -257,7 +266,7 @@ bool steer_back(struct session *session, const struct command_line *line, struct
     if (line->number_count) time = fmin(time, nextafter(line->numbers[0], INFINITY));
     const struct keeper_state *state = keeper_before(&session->keeper, time);
     struct timeline copy = {0};
-    const bool done = rewound(session, state->time, &copy, error)
+    const bool done = rewound(session, state, &copy, error)
                    && return_to(session, state, &copy, error);
     timeline_close(&copy);
     if (done) rest(session);

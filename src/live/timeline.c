@@ -7,7 +7,6 @@
 #include "base/asset.h"
 #include "run/folder.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -99,7 +98,7 @@ bool timeline_open(struct timeline *timeline, const char *path, const char *text
 
 static void free_entries(struct timeline *timeline)
 {
-    timeline_cut(timeline, -INFINITY);
+    timeline_cut(timeline, 0);
     free(timeline->entries);
     timeline->entries = NULL;
 }
@@ -162,10 +161,9 @@ static bool append_entry(struct timeline *timeline, const struct timeline_entry 
     return true;
 }
 
-void timeline_cut(struct timeline *timeline, double time)
+void timeline_cut(struct timeline *timeline, uint32_t count)
 {
-    while (timeline->entry_count > 0
-           && timeline->entries[timeline->entry_count - 1].time >= time) {
+    while (timeline->entry_count > count) {
         struct timeline_entry *last = &timeline->entries[--timeline->entry_count];
         timeline_free_texts(&last->sets);
         free(last->push);
@@ -176,7 +174,7 @@ bool timeline_append(struct timeline *timeline, const struct timeline *from, dou
                      struct error *error)
 {
     for (uint32_t k = 0; k < from->entry_count; k++) {
-        if (from->entries[k].time < time) continue;
+        if (from->entries[k].time <= time) continue;
         if (!append_entry(timeline, &from->entries[k], error)) return false;
     }
     return true;
@@ -189,7 +187,7 @@ bool timeline_copy(const struct timeline *timeline, struct timeline *copy, struc
                        timeline->overrides.count, error)) {
         return false;
     }
-    return timeline_append(copy, timeline, -INFINITY, error);
+    return timeline_append(copy, timeline, 0, error);
 }
 
 bool timeline_adopt(struct timeline *timeline, const struct scene *scene, struct error *error)

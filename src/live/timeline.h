@@ -46,10 +46,10 @@ bool timeline_setup(const struct timeline *timeline, const struct scene *grains_
 /* Takes the phases over that a scene itself brings. */
 bool timeline_adopt(struct timeline *timeline, const struct scene *scene, struct error *error);
 
-/* Forgets the entries from `time` on. */
-void timeline_cut(struct timeline *timeline, double time);
+/* Forgets all but the first `count` entries. */
+void timeline_cut(struct timeline *timeline, uint32_t count);
 
-/* Adds the entries of another timeline from `time` on. */
+/* Adds the entries of another timeline that begin after `time`. */
 bool timeline_append(struct timeline *timeline, const struct timeline *from, double time,
                      struct error *error);
 

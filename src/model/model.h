@@ -74,7 +74,8 @@ struct model {
     /* After ADVANCE_BROKEN: which grain, where, when and why. */
     const struct fault *(*fault)(const void *state);
 
-    /* Optional: fills a field for lattices too large to list (NULL: coarse-grain `observe`). */
+    /* Optional, for lattices too large to list: adds to the cells of a grid what stands there; the
+     * components are those of enum field_sample, zero before (NULL: coarse-grain `observe`). */
     bool (*sample)(const void *state, struct field *field);
 };
 

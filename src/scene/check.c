@@ -442,8 +442,7 @@ void check_scene(const struct scene *scene, struct findings *findings)
 
 /* What a phase cannot change, because the grains are there already. */
 static const char *const fixed_keys[] = {"placements", "box", "seed", "phases", "quick",
-                                         "quick_set",
-                                         "count_max", "units", "until", "model", "title"};
+                                         "quick_set", "units", "until", "model", "title"};
 
 static void check_phase(struct check check, const struct phase_entry *entry)
 {

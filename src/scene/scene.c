@@ -249,13 +249,12 @@ static bool build_phases(struct scene *scene, const struct scene_request *reques
     return true;
 }
 
-/* A phase begins with the grains of the whole scene and must hold as many. */
+/* A phase begins with the grains of the whole scene. */
 static void share_with_phases(struct scene *scene)
 {
     for (uint32_t k = 1; k < scene->phase_count; k++) {
         struct scene *phase = scene->phases[k];
         phase->placed = scene->placed;
-        phase->count_max = scene->count_max;
         phase->radius_min = fmin(phase->radius_min, scene->radius_min);
         phase->radius_max = fmax(phase->radius_max, scene->radius_max);
         phase->radius_mean = scene->radius_mean;
@@ -291,9 +290,11 @@ struct scene *scene_load(const struct scene_request *request, struct findings *f
             resolve_radii(scene);
         }
         scene->count_max = resolve_count_max(scene, placed);
+        uint32_t most = scene->count_max;
         for (uint32_t k = 1; k < scene->phase_count; k++) {     /* one may bring a source */
             const uint32_t needs = resolve_count_max(scene->phases[k], placed);
-            if (needs > scene->count_max) scene->count_max = needs;
+            most = needs > most ? needs : most;
+            scene->phases[k]->count_max = most;
         }
         share_with_phases(scene);
     }

@@ -198,6 +198,10 @@ static void write_phase(FILE *out, const struct scene *scene, uint32_t index)
         write_text(out, entry->set.texts[k]);
     }
     bool first = entry->set.count == 0;
+    if (now->count_max != before->count_max && !sets_key(&entry->set, "count_max")) {
+        fprintf(out, "%s\"count_max=%u\"", first ? "" : ", ", now->count_max);
+        first = false;
+    }
     for (uint32_t k = 0; k < before->species_count && k < now->species_count; k++) {
         char prefix[40];
         snprintf(prefix, sizeof prefix, "grains.[%u]", k);

@@ -58,7 +58,8 @@ struct dsmc_axis {
 
 struct dsmc_sums {              /* of one thread in one step */
     uint64_t collisions, rejected, tangential;
-    char apart[40];             /* on its own cache line */
+    bool moved;                 /* hsmc: has a grain changed its cell? */
+    char apart[32];             /* on its own cache line */
 };
 
 /* Walls near each cell of a grid that stands still. */

@@ -34,6 +34,11 @@ struct ed_law {
 bool ed_law_create(struct ed_law *law, const struct scene *scene,
                    const struct ed_settings *settings, struct arena *arena);
 
+/* The restitution that the dashpots of two species make at the reference speed, for grains of mean
+ * size; at a wall made of species b if `wall`.  Stiffness and damping must be given. */
+double ed_law_derived(const struct species *a, const struct species *b,
+                      const struct ed_settings *settings, bool wall);
+
 /* Coefficient of restitution at normal speed v. */
 static inline double ed_law_restitution(const struct ed_law *law, double r, double v)
 {

@@ -183,7 +183,9 @@ static void prepare_ends(struct band *band)
         place[1] = slot(band, starts[end]);
         place[2] = slot(band, starts[end] + 1);
         place[3] = band->slots + slot_words(band->lga->bits);
-        for (int i = 0; i < HALO + 2; i++) survey(band, row_of(band, starts[end] - 1 + i), place[i]);
+        for (int i = 0; i < HALO + 2; i++) {
+            survey(band, row_of(band, starts[end] - 1 + i), place[i]);
+        }
         for (int i = 0; i < HALO; i++) {
             uint64_t *const near[3] = {place[i], place[i + 1], place[i + 2]};
             collide(band, row_of(band, starts[end] + i), near);
