@@ -84,9 +84,10 @@ const struct command cli_commands[] = {
      "gnuplot's script.  Exit code 4 if a verdict is other than `agrees`.\n",
      figure_options, 0, OPTIONS_OPERANDS_MAX, cli_figure},
     {"plot", "SCENE|RUN", "plots what a run measured, as PNG, SVG, PDF or in the terminal",
-     "--of energy, contacts, flux, force, stress, impact, frequency, scattering need the tables of a\n"
-     "run; --of anisotropy, structure, pair, heap look at grains, at -t or at the end.  The table\n"
-     "and gnuplot's script stay beside the picture, in the run's directory unless -o says another.\n",
+     "--of energy, contacts, flux, force, stress, impact, frequency, scattering need the tables\n"
+     "of a run; --of anisotropy, structure, pair, heap look at grains, at -t or at the end.  The\n"
+     "table and gnuplot's script stay beside the picture, in the run's directory unless -o says\n"
+     "another.\n",
      plot_options, 1, 1, cli_plot},
     {"check", "SCENE", "tests a scene and simulates nothing", "Exit code 3 if it has errors.\n",
      check_options, 1, 1, cli_check},
