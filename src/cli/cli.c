@@ -60,8 +60,8 @@ const struct command cli_commands[] = {
      "(--model md,lga) or several scenes and runs into one picture; --size is that of one panel.\n",
      movie_options, 1, OPTIONS_OPERANDS_MAX, cli_movie},
     {"live", "SCENE|RUN", "watches and steers a simulation while it runs",
-     "--web prints an address for a browser; --commands FILE carries out a file of commands, and\n"
-     "ends unless --web goes on.  A run goes on from its newest checkpoint.  The session is\n"
+     "In the terminal, unless --web prints an address for a browser; --commands FILE carries out a\n"
+     "file of commands, and ends unless --web goes on.  A run goes on from its newest checkpoint.  The session is\n"
      "written down in a directory, NAME-live unless -o says another; `sandreel replay` repeats\n"
      "it.  docs/live.md lists the commands.\n",
      live_options, 1, 1, cli_live},
