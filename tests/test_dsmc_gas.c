@@ -207,6 +207,20 @@ static double sheared_temperature(double rate)
     return sum / (LAST - FIRST) / (rate * rate);
 }
 
+static void test_the_dense_form_is_not_used_between_sheared_borders(void **unused)
+{
+    (void)unused;
+    struct scenes_run *run = begin_gas(60, 0.9, "method = \"dense\"; }; shear_rate = 1.0; md = {");
+    const struct dsmc_settings *settings = scene_settings(run->scene, "dsmc");
+    CHECK(settings->method == DSMC_PLAIN);
+    CHECK(run->findings.count == 1 && strstr(run->findings.list[0].text, "plain is taken"));
+    scenes_end(run);
+    run = begin_gas(60, 0.9, "method = \"dense\";");
+    settings = scene_settings(run->scene, "dsmc");
+    CHECK(settings->method == DSMC_DENSE && run->findings.count == 0);
+    scenes_end(run);
+}
+
 static void test_uniform_shear_heats_as_the_square_of_its_rate(void **unused)
 {
     (void)unused;
@@ -235,6 +249,25 @@ static void test_rough_elastic_grains_share_energy_with_their_spins(void **unuse
     CHECK_NEAR(energy / before.kinetic_energy, 1, 2e-3);
     CHECK_NEAR(after.rotational_energy / energy, 1.0 / 3, 0.03);
     CHECK(after.tangential == after.collisions);
+    scenes_end(run);
+}
+
+static void test_impact_parameters_are_uniform_and_each_collision_has_one(void **unused)
+{
+    (void)unused;
+    struct scenes_run *run = begin_gas(100.0, 1, "method = \"plain\"; };"
+        "measure = { impact_parameters = true; impact_bins = 10; }; md = {");
+    scenes_advance(run, 10);
+    const struct tally_impact *impact = &simulation_tally(&run->sim)->impact;
+    const double collisions = (double)simulation_count(&run->sim).collisions;
+    double sum = 0;
+    CHECK(impact->bins == 10 && collisions > 20000);
+    for (uint32_t k = 0; k < impact->bins; k++) {
+        sum += impact->count[k];
+        /* Poisson in each bin; four deviations of ten bins are exceeded once in 1600 seeds. */
+        CHECK_NEAR(impact->count[k], collisions / 10, 4 * sqrt(collisions / 10));
+    }
+    CHECK(sum == collisions);
     scenes_end(run);
 }
 
@@ -281,8 +314,10 @@ int main(void)
         cmocka_unit_test(test_displaced_grains_have_the_pressure_of_discs),
         cmocka_unit_test(test_a_wall_feels_the_pressure_of_the_gas),
         cmocka_unit_test(test_a_cooling_gas_follows_hard_discs),
+        cmocka_unit_test(test_the_dense_form_is_not_used_between_sheared_borders),
         cmocka_unit_test(test_uniform_shear_heats_as_the_square_of_its_rate),
         cmocka_unit_test(test_rough_elastic_grains_share_energy_with_their_spins),
+        cmocka_unit_test(test_impact_parameters_are_uniform_and_each_collision_has_one),
         cmocka_unit_test(test_the_bytes_do_not_depend_on_the_number_of_threads),
         cmocka_unit_test(test_a_grain_needs_forty_bytes_at_most),
     };

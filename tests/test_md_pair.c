@@ -4,6 +4,7 @@
  * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scenes.h"
 
+#include "model/contact.h"
 #include "model/md/md_law.h"
 
 /* Two discs of diameter and mass 1 (density 4/pi) that meet head on at relative speed 1. */
@@ -115,17 +116,17 @@ static void test_the_formulas_are_those_of_theory(void **unused)
     (void)unused;
     /* omega = sqrt(0.99): tc = pi/omega and exp(-pi 0.1/omega); clipped: MODELS. */
     const double omega = sqrt(0.99);
-    const struct md_collision open = md_law_linear_collision(0.1, false);
+    const struct contact_blow open = contact_linear(0.1, false);
     CHECK_NEAR(open.time, M_PI / omega, 1e-12);
     CHECK_NEAR(open.restitution, 0.72925, 5e-6);
-    const struct md_collision clipped = md_law_linear_collision(0.1, true);
+    const struct contact_blow clipped = contact_linear(0.1, true);
     CHECK_NEAR(clipped.time, (M_PI - atan2(2 * 0.1 * omega, 0.99 - 0.01)) / omega, 1e-12);
     CHECK_NEAR(clipped.restitution, 0.74408, 5e-6);
-    CHECK_NEAR(md_law_linear_damping(clipped.restitution, true), 0.1, 1e-9);
+    CHECK_NEAR(contact_linear_damping(clipped.restitution, true), 0.1, 1e-9);
     /* Across critical damping nothing jumps: r = exp(-2) there. */
-    CHECK_NEAR(md_law_linear_collision(1 - 1e-5, true).restitution, exp(-2), 1e-5);
-    CHECK_NEAR(md_law_linear_collision(1 + 1e-5, true).restitution, exp(-2), 1e-5);
-    const struct md_collision hertz = md_law_hertz_collision(0.25, true);
+    CHECK_NEAR(contact_linear(1 - 1e-5, true).restitution, exp(-2), 1e-5);
+    CHECK_NEAR(contact_linear(1 + 1e-5, true).restitution, exp(-2), 1e-5);
+    const struct contact_blow hertz = contact_hertz(0.25, true);
     CHECK_NEAR(hertz.restitution, 0.70849, 1e-5);
     CHECK_NEAR(hertz.overlap, 1.12525, 1e-5);
 }

@@ -4,6 +4,8 @@
  */
 #include "cli/cli.h"
 #include "cli/opening.h"
+#include "bench/effects.h"
+#include "model/simulation.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -69,7 +71,65 @@ static void tell_summary(const struct setup *setup)
                                                       sizeof text));
 }
 
-static void explain(const struct scene *scene)
+/* What a character of the picture stands for: what is solid in it, or else its middle. */
+static char ground_of(const struct simulation *sim, double x, double y, double width, double height)
+{
+    enum { POINTS = 8 };
+    for (int k = 0; k < POINTS * POINTS; k++) {
+        const double dx = (k % POINTS + 0.5) / POINTS - 0.5;
+        const double dy = (k / POINTS + 0.5) / POINTS - 0.5;
+        if (sim->model->ground(sim->state, x + dx * width, y + dy * height) == '#') return '#';
+    }
+    return sim->model->ground(sim->state, x, y);
+}
+
+/* The box as the model's lattice has it; characters are about twice as high as wide. */
+static bool tell_ground(const struct setup *setup, struct error *error)
+{
+    enum { COLUMNS = 72, ROWS_MAX = 48 };
+    const double *box = setup->scene->box;
+    const double width = box[2] - box[0], height = box[3] - box[1];
+    if (!setup->model->ground) return true;
+    struct simulation sim;
+    if (!simulation_create(&sim, setup->model, setup->scene, error)) return false;
+    const double cell = fmax(width / COLUMNS, height / (2 * ROWS_MAX));
+    const int columns = (int)ceil(width / cell - 1e-9), rows = (int)ceil(height / cell / 2 - 1e-9);
+    printf("its lattice at t = 0 (# solid, v sink; a character is %.3g x %.3g %s):\n", cell,
+           2 * cell, scene_unit(setup->scene, "length"));
+    for (int j = rows - 1; j >= 0; j--) {
+        printf("    |");
+        for (int i = 0; i < columns; i++) {
+            putchar(ground_of(&sim, box[0] + (i + 0.5) * cell, box[1] + (j + 0.5) * 2 * cell,
+                              cell, 2 * cell));
+        }
+        printf("|\n");
+    }
+    simulation_destroy(&sim);
+    return true;
+}
+
+/* What it costs here: measured now, by going on without it from the same state. */
+static void tell_cost(const struct options *options, const struct model *model, effects_t effect)
+{
+    const struct setup_request request = {.path = options->operands[0],
+        .overrides = options->overrides, .override_count = options->override_count, .place = true};
+    struct effects_cost cost;
+    struct error error = {0};
+    char bytes[32];
+    if (!effects_measure(&request, effect, &cost, &error)) {
+        printf("  %-18s   cost: %s\n", "", error.text);
+    } else if (!cost.measured) {
+        printf("  %-18s   cost: not measured (%s)\n", "", cost.why);
+    } else {
+        printf("  %-18s   cost: %+.1f %% of the time of %s (%.3g us with, %.3g us without), "
+               "memory %s\n", "", 100 * (cost.with - cost.without) / cost.without, model->work,
+               1e6 * cost.with, 1e6 * cost.without,
+               opening_bytes(fmax(cost.bytes, 0), bytes, sizeof bytes));
+    }
+}
+
+static void explain(const struct options *options, const struct scene *scene,
+                    const struct model *model)
 {
     struct scene_reason reason;
     for (int on = 1; on >= 0; on--) {
@@ -78,6 +138,7 @@ static void explain(const struct scene *scene)
             if (reason.on != (on == 1)) continue;
             printf("  %-18s %s\n", effect_word(reason.effect), effect_doc(reason.effect));
             printf("  %-18s   %s\n", "", reason.why);
+            if (on) tell_cost(options, model, reason.effect);
         }
     }
 }
@@ -91,7 +152,8 @@ int cli_check(const struct options *options)
         return opening_fail(&error);
     }
     tell_summary(&setup);
-    if (options_given(options, OPTION_explain)) explain(setup.scene);
+    const bool told = tell_ground(&setup, &error);
+    if (options_given(options, OPTION_explain)) explain(options, setup.scene, setup.model);
     setup_free(&setup);
-    return EXIT_DONE;
+    return told ? EXIT_DONE : opening_fail(&error);
 }

@@ -4,7 +4,7 @@
  */
 #include "cli/cli.h"
 #include "cli/opening.h"
-#include "bench/stress.h"
+#include "bench/hard.h"
 #include "run/build.h"
 
 #include <jansson.h>
@@ -15,23 +15,23 @@
 struct totals { uint32_t tried, failed; };
 
 /* "mass inside overlap": all that is checked. */
-static char *checks_text(const struct stress_result *result, char *text, size_t size)
+static char *checks_text(const struct hard_result *result, char *text, size_t size)
 {
     size_t used = 0;
     text[0] = 0;
-    for (int k = 0; k < STRESS_CHECKS_COUNT && used < size; k++) {
+    for (int k = 0; k < HARD_CHECKS_COUNT && used < size; k++) {
         if (!result->values[k].asked) continue;
         used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " " : "",
-                                 stress_check_name((enum stress_check)k));
+                                 hard_check_name((enum hard_check)k));
     }
     return text;
 }
 
 /* "overlap 3e-13 of 1e-09": the check that came nearest to its limit. */
-static char *worst_text(const struct stress_result *result, char *text, size_t size)
+static char *worst_text(const struct hard_result *result, char *text, size_t size)
 {
-    const struct stress_value *value = &result->values[result->tightest];
-    const char *name = stress_check_name(result->tightest);
+    const struct hard_value *value = &result->values[result->tightest];
+    const char *name = hard_check_name(result->tightest);
     if (!isnan(value->low) && !isnan(value->high)) {
         snprintf(text, size, "%s %.3g in %.3g..%.3g", name, value->worst, value->low, value->high);
     } else if (value->high > 0) {
@@ -42,7 +42,7 @@ static char *worst_text(const struct stress_result *result, char *text, size_t s
     return text;
 }
 
-static void tell(const char *scene, const struct stress_result *result)
+static void tell(const char *scene, const struct hard_result *result)
 {
     char checks[200], worst[100];
     printf("%-24s %-34.34s %-7s %-32s %8.2f s  %s\n", scene, result->run,
@@ -57,18 +57,18 @@ static json_t *number(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
-static json_t *describe(const char *scene, const struct stress_result *result)
+static json_t *describe(const char *scene, const struct hard_result *result)
 {
     json_t *checks = json_object();
-    for (int k = 0; k < STRESS_CHECKS_COUNT; k++) {
-        const struct stress_value *value = &result->values[k];
+    for (int k = 0; k < HARD_CHECKS_COUNT; k++) {
+        const struct hard_value *value = &result->values[k];
         if (!value->asked) continue;
-        json_object_set_new(checks, stress_check_name((enum stress_check)k),
+        json_object_set_new(checks, hard_check_name((enum hard_check)k),
             json_pack("{s:o, s:o, s:o}", "worst", number(value->worst), "at_least",
                       number(value->low), "at_most", number(value->high)));
     }
     return json_pack("{s:s, s:s, s:b, s:s, s:s, s:o, s:f, s:f, s:I}", "scene", scene, "run",
-        result->run, "passed", result->passed, "tightest", stress_check_name(result->tightest),
+        result->run, "passed", result->passed, "tightest", hard_check_name(result->tightest),
         "why", result->why, "checks", checks, "wall_seconds", result->wall, "cpu_seconds",
         result->cpu, "work", (json_int_t)result->steps);
 }
@@ -78,12 +78,12 @@ static bool try_case(const char *scene, bool named, const struct options *option
                      struct totals *totals, json_t *list, struct error *error)
 {
     bool slow = false;
-    const uint32_t runs = stress_runs(scene, &slow, error);
+    const uint32_t runs = hard_runs(scene, &slow, error);
     if (runs == 0) return false;
     if (slow && !named && options_given(options, OPTION_quick)) return true;
     for (uint32_t k = 0; k < runs; k++) {
-        struct stress_result result;
-        if (!stress_try(scene, k, &result, error)) return false;
+        struct hard_result result;
+        if (!hard_try(scene, k, &result, error)) return false;
         totals->tried++;
         totals->failed += !result.passed;
         if (list) json_array_append_new(list, describe(scene, &result));
@@ -107,7 +107,7 @@ int cli_stress(const struct options *options)
     for (uint32_t k = 0; done && k < options->operand_count; k++) {
         done = try_case(options->operands[k], true, options, &totals, list, &error);
     }
-    for (uint32_t k = 0; options->operand_count == 0 && stress_name(k, name, sizeof name); k++) {
+    for (uint32_t k = 0; options->operand_count == 0 && hard_name(k, name, sizeof name); k++) {
         done = done && try_case(name, false, options, &totals, list, &error);
     }
     if (done && json) {

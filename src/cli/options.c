@@ -146,6 +146,14 @@ static bool take(struct options *options, int id, const char *value, struct erro
         if (strchr(value, '=')) return add_override(options, value, error);
         return error_set_code(error, EXIT_USAGE, "-s %s: needs KEY=VALUE", value);
     }
+    if (id == OPTION_vary) {
+        if (options->vary_count == OPTIONS_VARIES_MAX) {
+            return error_set_code(error, EXIT_USAGE, "more than %d keys varied",
+                                  OPTIONS_VARIES_MAX);
+        }
+        options->varies[options->vary_count++] = value;
+        return true;
+    }
     /* Several models are the caller's to go through. */
     if (!row->key || (id == OPTION_model && strchr(value, ','))) return true;
     char *text = make_override(row, value);

@@ -25,6 +25,7 @@ struct figure_job;
     X("simplified-7",   heaps_hsmc_snapshot,  "a heap by HSMC")                                 \
     X("simplified-8",   heaps_hsmc_profile,   "profile of an HSMC heap against eq. 8")          \
     X("simplified-lga-heap", heaps_lattice_profile, "profile of a lattice gas heap against eq. 8") \
+    X("simplified-lga-pipe", lattice_pipe,    "density waves in a pipe: spectrum, space-time")  \
     X("cooperative-2",  cooling_two_models,   "K(t) by ED and DSMC against eq. 18")             \
     X("cooperative-3",  collisions_impact_times, "impact parameters P(b/d) at several times")   \
     X("cooperative-4",  collisions_impact_restitutions, "P(b/d) for several r, dense")          \
@@ -43,7 +44,7 @@ struct figure_job;
     X("stream-3",       scattering_spin,      "angular momentum by angle, L(Theta)")            \
     X("stream-4",       scattering_momentum,  "momentum by angle, |p|(Theta)")                  \
     X("stream-5",       stream_density,       "force against the density of the stream")        \
-    X("stream-6",       stream_radius,        "force against the size of round and flat obstacles") \
+    X("stream-6",       stream_radius,        "force against the size of the obstacle")   \
     X("stream-7",       corona_round,         "the corona before a round obstacle")             \
     X("stream-8",       corona_flat,          "the corona before a flat obstacle")              \
     X("stream-9",       stream_speed,         "force against the speed of the stream")          \
@@ -122,7 +123,7 @@ void figure_hold(struct figure_job *job, bool holds, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* What the paper says and the corrected physics does not give.  `known` says that what came out
- * is what MODELS expects. */
+ * is what independent programs give too. */
 void figure_miss(struct figure_job *job, bool known, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -164,6 +164,10 @@ void map_add(struct map *map, const struct grains *grains)
 {
     if (map->snapshots++ == 0) map->from = grains->time;
     map->to = grains->time;
+    if (grains->sample.values) {
+        map_kernel_add_sample(&map->grid, map->parts[0].cells, &grains->sample);
+        return;
+    }
     unsigned gather = map->gather;              /* what the picture does not show adds nothing */
     if (!grains->radius) gather &= ~(unsigned)(MAP_GATHER_AREA | MAP_GATHER_SPIN);
     if (!grains->spin) gather &= ~(unsigned)MAP_GATHER_SPIN;

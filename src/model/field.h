@@ -27,6 +27,14 @@ enum { FIELD_CELLS_MAX = 16777216 };    /* of a map: 4096 x 4096 */
 double field_cells(const struct scene *scene, const struct measure *measure, double *nx,
                    double *ny);
 
+/* The components of a sample: what stands in each cell of a grid, in sums over its grains. */
+enum field_sample {
+    SAMPLE_COUNT, SAMPLE_MASS, SAMPLE_AREA, SAMPLE_MOMENTUM_X, SAMPLE_MOMENTUM_Y,
+    SAMPLE_ENERGY,              /* m v^2 */
+    SAMPLE_SPEED,               /* |v| */
+    SAMPLES
+};
+
 bool field_create(struct field *field, double x0, double y0, double cell, uint32_t nx,
                   uint32_t ny, uint32_t components, struct error *error);
 void field_free(struct field *field);

@@ -30,6 +30,7 @@ bool grains_create(struct grains *grains, uint32_t capacity, uint32_t contact_ca
 void grains_free(struct grains *grains)
 {
     struct arena arena = grains->arena;
+    field_free(&grains->sample);
     *grains = (struct grains){0};
     arena_free(&arena);
 }

@@ -9,6 +9,7 @@
 
 #include "base/arena.h"
 #include "base/error.h"
+#include "model/field.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -39,6 +40,8 @@ struct grains {
                                  * zero without EFFECT_COLLISION_COUNT */
     uint16_t *species;
     struct contact *contacts;   /* NULL: not wanted */
+    struct field sample;        /* instead of a list, where there are too many grains: sums on a
+                                 * grid (enum field_sample); values NULL: the list is whole */
     struct arena arena;         /* owns the arrays if grains_create made them */
 };
 

@@ -74,8 +74,13 @@ struct model {
     /* After ADVANCE_BROKEN: which grain, where, when and why. */
     const struct fault *(*fault)(const void *state);
 
-    /* Optional: fills a field for lattices too large to list (NULL: coarse-grain `observe`). */
+    /* Optional, for lattices too large to list: adds to the cells of a grid what stands there; the
+     * components are those of enum field_sample, zero before (NULL: coarse-grain `observe`). */
     bool (*sample)(const void *state, struct field *field);
+
+    /* Optional, for models that put the scene onto a lattice of their own: what became of a place,
+     * as `check` shows it: '#' solid, 'v' a sink, ' ' free. */
+    char (*ground)(const void *state, double x, double y);
 };
 
 enum { MODEL_MAX = 8 };

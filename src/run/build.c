@@ -11,6 +11,10 @@
 #include <fftw3.h>
 #include <ft2build.h>
 #include FT_FREETYPE_H
+#ifdef SANDREEL_MPI
+#include <mpi.h>
+#include <string.h>
+#endif
 
 const char *const build_version = SANDREEL_VERSION;
 
@@ -39,6 +43,13 @@ json_t *build_versions(void)
 #endif
 #ifdef SANDREEL_HDF5
     json_object_set_new(versions, "hdf5", json_string(SANDREEL_HDF5));
+#endif
+#ifdef SANDREEL_MPI
+    char library[MPI_MAX_LIBRARY_VERSION_STRING];
+    int length;
+    MPI_Get_library_version(library, &length);
+    library[strcspn(library, ",\n")] = 0;
+    json_object_set_new(versions, "mpi", json_string(library));
 #endif
     return versions;
 }

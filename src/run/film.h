@@ -15,7 +15,7 @@
 #include "model/model.h"
 #include "run/encoder.h"
 
-enum { FILM_VARIABLES = 6 };
+enum { FILM_VARIABLES = 7 };
 
 struct film {
     const struct scene *scene;

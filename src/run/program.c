@@ -90,6 +90,13 @@ bool program_finish(struct program *program)
     return ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
+bool program_poll(struct program *program, int *status)
+{
+    if (waitpid(program->process, status, WNOHANG) != program->process) return false;
+    program->process = 0;
+    return true;
+}
+
 void program_stop(struct program *program)
 {
     if (program->process <= 0) return;

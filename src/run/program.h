@@ -33,6 +33,9 @@ bool program_send(struct program *program, const void *bytes, size_t size);
 /* Ends its input and waits; true if it was content. */
 bool program_finish(struct program *program);
 
+/* Has it ended?  Then *status is what waitpid() gave, and there is nothing left to finish. */
+bool program_poll(struct program *program, int *status);
+
 /* Stops it. */
 void program_stop(struct program *program);
 

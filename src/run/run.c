@@ -307,6 +307,12 @@ static void fill_result(struct run *run, struct run_result *result)
     result->parts = run->parts;
     result->cpu_encode = encoder_cpu(run->writer.encoder);
     result->wall = wall_now(run);
+    for (uint32_t p = 0; p < run->scene->phase_count; p++) {
+        result->effects |= run->scene->phases[p]->effects;
+    }
+    const double span = result->counters.time - run->time_start;
+    if (span > 0) result->per_time = run->parts.wall[PART_core] / span;
+    if (run->work_done > 0) result->per_step = run->parts.wall[PART_core] / run->work_done;
     result->frames = run->writer.schedules[WRITER_FRAME].next;
     result->maps = run->writer.maps;
     result->log_rows = run->writer.logbook.ledger.rows;

@@ -101,7 +101,12 @@ static bool open_pictures(struct writer *writer, bool resume, struct error *erro
      * be found anew, so the new frames take them over. */
     if (resume && !file_exists(path)) recall_range(writer->directory, scene, &view);
     if (!film_open(&writer->film, scene, writer->sim->model, &view, error)) return false;
-    writer->draws_later = film_needs_gathering(&writer->film);
+    /* What is not listed is not kept either, so then each frame is coloured by itself. */
+    writer->draws_later = film_needs_gathering(&writer->film) && !look_samples(writer->sim);
+    if (scene->output.dump && look_samples(writer->sim)) {
+        return error_set_code(error, EXIT_SCENE, "%s: more than %d grains are not listed, so their "
+            "states cannot be kept; delete output.dump", scene->path, LOOK_LIST_MAX);
+    }
     writer->keeps_grains = scene->output.dump || writer->draws_later;
     if (resume && !writer->keeps_grains) folder_clear(writer->directory, "dump");
     writer->movie_late = *scene->output.movie && resume && !writer->draws_later;

@@ -155,6 +155,7 @@ struct measure {
     bool   impact_parameters;   /* histogram of b/d */
     uint32_t impact_bins;
     bool   stress;              /* what contacts carry, in all and in each cell of the maps' grid */
+    struct key_texts cost;      /* by which `sandreel cost` compares: energy, ... */
 };
 
 /* `output`: what a run writes and how often; 0 = never. */
@@ -169,13 +170,13 @@ struct output {
     int    png_level;           /* zlib level */
 };
 
-enum stress_end { STRESS_REACHED, STRESS_REFUSED, STRESS_STOPPED };
+enum hard_end { HARD_REACHED, HARD_REFUSED, HARD_STOPPED };
 
-/* `stress`: what must hold while this scene runs, for the command of the same name. */
-struct ordeal {
+/* `hard`: what must hold while this scene runs, for the command `stress`. */
+struct hard {
     struct key_texts models;    /* "MODEL KEY=VALUE ...", one run each; none: it is no case */
     bool   slow;                /* takes longer than a few seconds */
-    int    ends;                /* enum stress_end */
+    int    ends;                /* enum hard_end */
     char   because[KEY_TEXT_MAX];       /* words in the reason for a refusal or stop */
     bool   mass;                /* grains and mass are kept, but for what enters and leaves */
     double momentum;            /* changes at most by this share of sqrt(2 M K) at the start */
@@ -232,7 +233,7 @@ struct scene {
     struct view    view;
     struct measure measure;
     struct output  output;
-    struct ordeal  stress;
+    struct hard    hard;
 
     /* Derived: */
     effects_t effects;

@@ -204,6 +204,8 @@ static const struct key measure_keys[] = {
     COUNT(measure, impact_bins, "50", 10000, "of the impact parameter, over 0 to 1"),
     BOOL(measure, stress, "false",
          "the stress that collisions carry and the kinetic one: in log.csv, and as maps"),
+    TEXTS(measure, cost, "what `sandreel cost` compares: energy, collisions, discharge, force, "
+          "density, height; absent: what suits the scene"),
 };
 
 static const struct key output_keys[] = {
@@ -224,38 +226,38 @@ static const struct key output_keys[] = {
      "effort of compression"},
 };
 
-static const struct key stress_keys[] = {
-    TEXTS(ordeal, models, "runs to make, each \"MODEL KEY=VALUE ...\"; none: it is no hard case"),
-    BOOL(ordeal, slow, "false", "takes longer than a few seconds"),
-    CHOICE(ordeal, ends, "reached", "reached|refused|stopped", "how the run must end"),
-    TEXT(ordeal, because, "", NULL, "words that the reason of a refusal or stop must hold"),
-    BOOL(ordeal, mass, "true", "grains and mass are kept, but for what enters and leaves"),
-    REAL(ordeal, momentum, "nan", 0, FAR, "1",
+static const struct key hard_keys[] = {
+    TEXTS(hard, models, "runs to make, each \"MODEL KEY=VALUE ...\"; none: it is no hard case"),
+    BOOL(hard, slow, "false", "takes longer than a few seconds"),
+    CHOICE(hard, ends, "reached", "reached|refused|stopped", "how the run must end"),
+    TEXT(hard, because, "", NULL, "words that the reason of a refusal or stop must hold"),
+    BOOL(hard, mass, "true", "grains and mass are kept, but for what enters and leaves"),
+    REAL(hard, momentum, "nan", 0, FAR, "1",
          "it changes at most by this share of sqrt(2 M K), K: kinetic energy at the start"),
-    REAL(ordeal, energy_rises, "nan", 0, FAR, "1",
+    REAL(hard, energy_rises, "nan", 0, FAR, "1",
          "the sum of energies rises at most by this share of what has been in motion"),
-    REAL(ordeal, energy_changes, "nan", 0, FAR, "1",
+    REAL(hard, energy_changes, "nan", 0, FAR, "1",
          "the sum of energies differs from its first value at most by this share"),
-    REAL(ordeal, overlap, "nan", 0, 2, "1",
+    REAL(hard, overlap, "nan", 0, 2, "1",
          "largest overlap with a grain or a wall, as a share of the smaller radius"),
-    BOX(ordeal, within, "nan", "all centres stay in this rectangle; absent: no further than a "
+    BOX(hard, within, "nan", "all centres stay in this rectangle; absent: no further than a "
         "radius outside of solid borders"),
-    ROW(ordeal, grains, KEY_RANGE, "nan", 0, FAR, "1", NULL, "how many there are at the end"),
-    ROW(ordeal, energy_left, KEY_RANGE, "nan", 0, FAR, "1", NULL,
+    ROW(hard, grains, KEY_RANGE, "nan", 0, FAR, "1", NULL, "how many there are at the end"),
+    ROW(hard, energy_left, KEY_RANGE, "nan", 0, FAR, "1", NULL,
         "kinetic energy at the end as a share of that at the start"),
-    ROW(ordeal, travel, KEY_RANGE, "nan", 0, FAR, "1", NULL,
+    ROW(hard, travel, KEY_RANGE, "nan", 0, FAR, "1", NULL,
         "mean way of a grain from its start to its end, in mean diameters"),
-    REAL(ordeal, collisions, "0", 0, FAR, "1", "so many must happen"),
-    REAL(ordeal, since, "0", 0, FAR, "time",
+    REAL(hard, collisions, "0", 0, FAR, "1", "so many must happen"),
+    REAL(hard, since, "0", 0, FAR, "time",
          "changes, shares and ways are measured from here on"),
-    REAL(ordeal, work, "nan", KEY_POSITIVE, FAR, "1", "at most so many steps, events or ticks"),
-    REAL(ordeal, seconds, "120", KEY_POSITIVE, FAR, "s of wall time", "after these it has failed"),
-    {"looks", KEY_COUNT, offsetof(struct ordeal, looks), "20", 1, 1000000, "1", NULL,
+    REAL(hard, work, "nan", KEY_POSITIVE, FAR, "1", "at most so many steps, events or ticks"),
+    REAL(hard, seconds, "120", KEY_POSITIVE, FAR, "s of wall time", "after these it has failed"),
+    {"looks", KEY_COUNT, offsetof(struct hard, looks), "20", 1, 1000000, "1", NULL,
      "how often everything is compared on the way"},
-    TEXTS(ordeal, agrees_with, "\"KEY=VALUE\" of a second run that must end alike"),
-    REAL(ordeal, positions, "nan", 0, FAR, "1",
+    TEXTS(hard, agrees_with, "\"KEY=VALUE\" of a second run that must end alike"),
+    REAL(hard, positions, "nan", 0, FAR, "1",
          "of the two runs may differ by so many mean diameters, measured from box to box"),
-    REAL(ordeal, energies, "nan", 0, FAR, "1",
+    REAL(hard, energies, "nan", 0, FAR, "1",
          "kinetic ones of the two runs may differ by this share"),
 };
 
@@ -275,7 +277,7 @@ static const struct key_group
     view_group = GROUP(view, "view", view_keys, "how frames look"),
     measure_group = GROUP(measure, "measure", measure_keys, "maps, and what is gathered"),
     output_group = GROUP(output, "output", output_keys, "what a run writes, and how often"),
-    stress_group = GROUP(ordeal, "stress", stress_keys,
+    hard_group = GROUP(hard, "hard", hard_keys,
                          "what must hold while it runs, tried by `sandreel stress`");
 
 #define LIST(group, array, counter) \
@@ -294,7 +296,7 @@ const struct scene_section scene_key_sections[SCENE_SECTIONS] = {
     SINGLE(view_group, view),
     SINGLE(measure_group, measure),
     SINGLE(output_group, output),
-    SINGLE(stress_group, stress),
+    SINGLE(hard_group, hard),
 };
 
 const struct key_group *scene_key_group(uint32_t index)

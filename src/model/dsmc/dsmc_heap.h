@@ -7,7 +7,7 @@
 
 #include "model/dsmc/dsmc.h"
 
-/* Moves all grains by one step. */
-void dsmc_heap_sweep(struct dsmc *dsmc);
+/* Moves all grains by one step.  Every thread of a team calls it, with its own sums. */
+void dsmc_heap_sweep(struct dsmc *dsmc, struct dsmc_sums *sums);
 
 #endif

@@ -14,6 +14,7 @@
 #include "base/rng.h"
 #include "model/dsmc/dsmc_collide.h"
 #include "model/dsmc/dsmc_flow.h"
+#include "model/dsmc/dsmc_flight.h"
 #include "model/dsmc/dsmc_heap.h"
 #include "model/dsmc/dsmc_vector.h"
 #include "model/dsmc/dsmc_walls.h"
@@ -57,122 +58,17 @@ static void lay_grid(struct dsmc *dsmc, uint64_t step)
     dsmc->next_ay = shifted(dsmc->ay, sy);
 }
 
-/* The next grid as the loops want it: both directions of two grains at once. */
-struct finder {
-    vector8 per, offset;
-    mask8   cells, beyond;
-    uint32_t columns;
-};
-
-static struct finder finder_of(const struct dsmc *dsmc)
-{
-    const struct dsmc_axis *ax = &dsmc->next_ax, *ay = &dsmc->next_ay;
-    const int32_t nx = (int32_t)ax->cells, ny = (int32_t)ay->cells;
-    const int32_t bx = (int32_t)ax->beyond, by = (int32_t)ay->beyond;
-    return (struct finder){
-        .per = {ax->per, ay->per, 0, 0, ax->per, ay->per, 0, 0},
-        .offset = {ax->offset, ay->offset, 0, 0, ax->offset, ay->offset, 0, 0},
-        .cells = {nx, ny, 1, 1, nx, ny, 1, 1}, .beyond = {bx, by, 0, 0, bx, by, 0, 0},
-        .columns = ax->cells,
-    };
-}
-
-/* The cells of two grains, as dsmc_cell() gives them.  What is no number, or too large for a whole
- * one, becomes negative and so 0. */
-FORCE_INLINE void find_two(const struct finder *f, const vector8 *p, uint32_t cell[2])
-{
-    mask8 k = __builtin_convertvector(*p * f->per + f->offset, mask8);
-    const mask8 inside = k < f->cells;
-    k = (k & inside) | (f->beyond & ~inside);
-    k &= ~(k >> 31);
-    const words4 words = (words4)k;                             /* x below, y above */
-    cell[0] = (uint32_t)(words[0] >> 32) * f->columns + (uint32_t)words[0];
-    cell[1] = (uint32_t)(words[2] >> 32) * f->columns + (uint32_t)words[2];
-}
-
-/* Not a function: how such a register is returned differs between processors. */
-#define TWICE(p) ((vector8){(p)[0], (p)[1], (p)[2], (p)[3], (p)[0], (p)[1], (p)[2], (p)[3]})
-
-FORCE_INLINE uint32_t find_one(const struct finder *f, vector4 p)
-{
-    const vector8 both = TWICE(p);
-    uint32_t cell[2];
-    find_two(f, &both, cell);
-    return cell[0];
-}
-
-FORCE_INLINE vector4 chosen(vector4 a, vector4 b, mask4 which)
-{
-    return (vector4)(((mask4)a & which) | ((mask4)b & ~which));
-}
-
 /* ---- flight --------------------------------------------------------------------------------- */
 
 struct run { uint32_t first, last, block; };    /* grains first .. last - 1 of a block of cells */
 
-/* Free flight of one step for records (x y vx vy). */
-struct flight {
-    vector4 time;               /* dt for positions, 0 for velocities */
-    vector4 fall;               /* g dt^2/2 and g dt */
-    vector4 below, above, by;   /* periodic: what lies below or above comes back by a length */
-    vector4 low, high;          /* solid borders: never beyond */
-    struct dsmc_image image;    /* Lees-Edwards */
-    float   stride2;            /* farther than that in a step: look at the walls on the way */
-};
-
-static struct flight flight_of(const struct dsmc *dsmc)
-{
-    const double *g = dsmc->scene->gravity, dt = dsmc->dt;
-    const float inf = INFINITY;
-    struct flight f = {
-        .time = {(float)dt, (float)dt, 0, 0},
-        .fall = {(float)(0.5 * g[0] * dt * dt), (float)(0.5 * g[1] * dt * dt), (float)(g[0] * dt),
-                 (float)(g[1] * dt)},
-        .below = {-inf, -inf, -inf, -inf}, .above = {inf, inf, inf, inf},
-        .low = {-inf, -inf, -inf, -inf}, .high = {inf, inf, inf, inf},
-    };
-    const struct scene *scene = dsmc->scene;
-    const int lows[2] = {scene->left, scene->bottom}, highs[2] = {scene->right, scene->top};
-    const float lengths[2] = {dsmc->ax.length, dsmc->ay.length};
-    for (int k = 0; k < 2; k++) {
-        if (lows[k] == BORDER_PERIODIC) {
-            f.below[k] = 0;
-            f.above[k] = f.by[k] = lengths[k];
-        }
-        if (lows[k] == BORDER_WALL) f.low[k] = 0;
-        if (highs[k] == BORDER_WALL) f.high[k] = lengths[k];
-    }
-    f.image = dsmc_image(dsmc);
-    f.stride2 = dsmc->walls.stride * dsmc->walls.stride;
-    return f;
-}
-
-FORCE_INLINE vector4 brought_back(const struct flight *f, vector4 p)
-{
-    p += (vector4)((mask4)f->by & (p < f->below));
-    p -= (vector4)((mask4)f->by & (p >= f->above));
-    p = chosen(f->low, p, p < f->low);
-    return chosen(f->high, p, p > f->high);
-}
-
-/* What leaves at the top comes in at the bottom, slower by the speed of the image above. */
-FORCE_INLINE vector4 sheared(const struct flight *f, vector4 p)
-{
-    const float side = p[1] >= f->above[1] ? 1 : p[1] < 0 ? -1 : 0;
-    if (side == 0) return p;
-    p[0] -= side * f->image.way;
-    p[2] -= side * f->image.speed;
-    if (p[0] < 0) p[0] += f->above[0];
-    return p;
-}
-
 /* Moves the grains of a block and counts them into their new cells. */
-FORCE_INLINE void fly(struct dsmc *dsmc, const struct flight *flight, struct run run,
+FORCE_INLINE void fly(struct dsmc *dsmc, const struct dsmc_flight *flight, struct run run,
                       uint32_t *restrict places, bool walls, bool shear)
 {
     vector4 *restrict grains = (vector4 *)(void *)dsmc->grains;
-    const struct flight f = *flight;
-    const struct finder finder = finder_of(dsmc);
+    const struct dsmc_flight f = *flight;
+    const struct dsmc_finder finder = dsmc_flight_finder(dsmc);
     for (uint32_t i = run.first; i < run.last; i++) {
         vector4 p = grains[i];
         const vector4 v = {p[2], p[3], p[2], p[3]};
@@ -184,19 +80,19 @@ FORCE_INLINE void fly(struct dsmc *dsmc, const struct flight *flight, struct run
         } else {
             p += way;
         }
-        if (shear) p = sheared(&f, p);
-        p = brought_back(&f, p);
+        if (shear) p = dsmc_flight_sheared(&f, p);
+        p = dsmc_flight_inside(&f, p);
         grains[i] = p;
-        places[find_one(&finder, p)]++;
+        places[dsmc_flight_one(&finder, p)]++;
     }
 }
 
 /* The same where nothing is in the way: no walls, no open or sheared borders. */
-FORCE_INLINE void fly_freely(struct dsmc *dsmc, const struct flight *f, struct run run,
+FORCE_INLINE void fly_freely(struct dsmc *dsmc, const struct dsmc_flight *f, struct run run,
                              uint32_t *restrict places)
 {
     struct dsmc_grain *restrict grains = dsmc->grains;
-    const struct finder finder = finder_of(dsmc);
+    const struct dsmc_finder finder = dsmc_flight_finder(dsmc);
     const vector8 time = TWICE(f->time), fall = TWICE(f->fall), by = TWICE(f->by);
     const vector8 below = TWICE(f->below), above = TWICE(f->above);
     uint32_t cell[2];
@@ -210,19 +106,19 @@ FORCE_INLINE void fly_freely(struct dsmc *dsmc, const struct flight *f, struct r
         const vector8 down = (vector8)((mask8)by & (p >= above));
         p = p + up - down;
         *at = p;
-        find_two(&finder, &p, cell);
+        dsmc_flight_two(&finder, &p, cell);
         places[cell[0]]++;
         places[cell[1]]++;
     }
     if (i == run.last) return;
     vector4 *at = (vector4 *)(void *)&grains[i];
     const vector4 v = {(*at)[2], (*at)[3], (*at)[2], (*at)[3]};
-    const vector4 p = brought_back(f, *at + (v * f->time + f->fall));
+    const vector4 p = dsmc_flight_inside(f, *at + (v * f->time + f->fall));
     *at = p;
-    places[find_one(&finder, p)]++;
+    places[dsmc_flight_one(&finder, p)]++;
 }
 
-CLONES static void fly_free(struct dsmc *dsmc, const struct flight *f, struct run run,
+CLONES static void fly_free(struct dsmc *dsmc, const struct dsmc_flight *f, struct run run,
                             uint32_t *places)
 {
     fly_freely(dsmc, f, run, places);
@@ -233,15 +129,16 @@ CLONES static void fly_free(struct dsmc *dsmc, const struct flight *f, struct ru
     X(open, false, false) X(walls, true, false) X(shear, false, true) X(both, true, true)
 
 #define X(name, walls, shear)                                                                   \
-    CLONES static void fly_##name(struct dsmc *dsmc, const struct flight *f, struct run run,    \
-                                  uint32_t *places)                                             \
+    CLONES static void fly_##name(struct dsmc *dsmc, const struct dsmc_flight *f,               \
+                                  struct run run, uint32_t *places)                             \
     {                                                                                           \
         fly(dsmc, f, run, places, walls, shear);                                                \
     }
 LOOPS(X)
 #undef X
 
-static void fly_block(struct dsmc *dsmc, const struct flight *f, struct run run, uint32_t *places)
+static void fly_block(struct dsmc *dsmc, const struct dsmc_flight *f, struct run run,
+                      uint32_t *places)
 {
     const bool walls = dsmc->walls.first, shear = f->image.speed != 0;
     if (walls) (shear ? fly_both : fly_walls)(dsmc, f, run, places);
@@ -265,9 +162,9 @@ _Static_assert(sizeof(struct luggage) == sizeof(struct dsmc_grain), "luggage fit
 CLONES static void count(const struct dsmc *dsmc, uint32_t *restrict places, uint32_t first,
                          uint32_t last)
 {
-    const struct finder finder = finder_of(dsmc);
+    const struct dsmc_finder finder = dsmc_flight_finder(dsmc);
     const vector4 *restrict grains = (const vector4 *)(const void *)dsmc->grains;
-    for (uint32_t i = first; i < last; i++) places[find_one(&finder, grains[i])]++;
+    for (uint32_t i = first; i < last; i++) places[dsmc_flight_one(&finder, grains[i])]++;
 }
 
 /* Turns the threads' counts into places: `first` of the cells of share `t`, in two passes. */
@@ -326,16 +223,16 @@ FORCE_INLINE void copy_grains(const struct dsmc *dsmc, uint32_t first, uint32_t 
 CLONES static void scatter(const struct dsmc *dsmc, uint32_t *restrict places, uint32_t first,
                            uint32_t last)
 {
-    const struct finder finder = finder_of(dsmc);
+    const struct dsmc_finder finder = dsmc_flight_finder(dsmc);
     const vector4 *from = (const vector4 *)(const void *)dsmc->grains;
     uint32_t place[SCATTER];
     for (uint32_t i = first; i < last; i += SCATTER) {
         const uint32_t n = last - i < SCATTER ? last - i : SCATTER;
         uint32_t m = 0;
         for (; m + 1 < n; m += 2) {
-            find_two(&finder, (const vector8 *)(const void *)&from[i + m], &place[m]);
+            dsmc_flight_two(&finder, (const vector8 *)(const void *)&from[i + m], &place[m]);
         }
-        if (m < n) place[m] = find_one(&finder, from[i + m]);
+        if (m < n) place[m] = dsmc_flight_one(&finder, from[i + m]);
         for (uint32_t k = 0; k < n; k++) {
             place[k] = places[place[k]]++;
             __builtin_prefetch(&dsmc->sorted[place[k]], 1);
@@ -407,8 +304,8 @@ void dsmc_move_sort(struct dsmc *dsmc)
 /* ---- a step --------------------------------------------------------------------------------- */
 
 /* Collides, moves and counts the grains of some blocks. */
-static void do_blocks(struct dsmc *dsmc, const struct flight *flight, uint32_t from, uint32_t to,
-                      uint32_t *places, struct dsmc_sums *sums)
+static void do_blocks(struct dsmc *dsmc, const struct dsmc_flight *flight, uint32_t from,
+                      uint32_t to, uint32_t *places, struct dsmc_sums *sums)
 {
     for (uint32_t block = from; block < to; block++) {
         const uint32_t first = dsmc->first[dsmc_collide_cell(dsmc, block)];
@@ -420,17 +317,27 @@ static void do_blocks(struct dsmc *dsmc, const struct flight *flight, uint32_t f
     }
 }
 
+static void collect_impacts(struct dsmc *dsmc)
+{
+    const uint32_t bins = dsmc->tally.impact.bins;
+    for (uint32_t k = 0; dsmc->impacts && k < bins * dsmc->threads; k++) {
+        dsmc->tally.impact.count[k % bins] += dsmc->impacts[k];         /* whole numbers: exact */
+        dsmc->impacts[k] = 0;
+    }
+}
+
 /* What changes the number of grains, or needs them one after the other. */
 static void do_alone(struct dsmc *dsmc)
 {
-    if (dsmc->full) dsmc_heap_sweep(dsmc);
+    collect_impacts(dsmc);
+    for (uint32_t t = 0; t < dsmc->threads; t++) dsmc->unsorted |= dsmc->sums[t].moved;
     dsmc_walls_collect(dsmc);
     dsmc->steps++;
     dsmc->steps_here++;
     dsmc_flow_pass(dsmc);
 }
 
-static void do_share(struct dsmc *dsmc, const struct flight *flight, uint32_t *starts)
+static void do_share(struct dsmc *dsmc, const struct dsmc_flight *flight, uint32_t *starts)
 {
     const uint32_t t = (uint32_t)omp_get_thread_num(), team = (uint32_t)omp_get_num_threads();
     const effects_t flows = EFFECT_OUTFLOW | EFFECT_SCREEN | EFFECT_INFLOW;
@@ -439,16 +346,20 @@ static void do_share(struct dsmc *dsmc, const struct flight *flight, uint32_t *s
     uint32_t *places = dsmc->places + (size_t)t * dsmc->cells;
     uint32_t first = dsmc->first[dsmc_collide_cell(dsmc, from)];
     uint32_t last = dsmc->first[dsmc_collide_cell(dsmc, to)];
-    struct dsmc_sums sums = {0};
+    struct dsmc_sums sums = {
+        .impacts = dsmc->impacts ? dsmc->impacts + (size_t)t * dsmc->tally.impact.bins : NULL};
     memset(places, 0, dsmc->cells * sizeof *places);
     do_blocks(dsmc, flight, from, to, places, &sums);
     dsmc->sums[t] = sums;
 #pragma omp barrier
+    if (dsmc->full) dsmc_heap_sweep(dsmc, &dsmc->sums[t]);
 #pragma omp master
     do_alone(dsmc);
 #pragma omp barrier
     if (dsmc->full && !dsmc->unsorted) return;          /* a heap at rest keeps its order */
-    if (waits) {                                        /* the counts are of other grains */
+    if (dsmc->full && team == 1 && !(dsmc->effects & flows)) {
+        for (uint32_t c = 0; c < dsmc->cells; c++) places[c] = dsmc->load[c];
+    } else if (waits) {                                 /* the counts are of other grains */
         memset(places, 0, dsmc->cells * sizeof *places);
         first = (uint32_t)((uint64_t)dsmc->count * t / team);
         last = (uint32_t)((uint64_t)dsmc->count * (t + 1) / team);
@@ -463,7 +374,7 @@ void dsmc_move_step(struct dsmc *dsmc)
     uint32_t starts[dsmc->threads];
     dsmc_walls_place(dsmc);
     lay_grid(dsmc, dsmc->steps + 1);
-    const struct flight flight = flight_of(dsmc);
+    const struct dsmc_flight flight = dsmc_flight_of(dsmc);
     memset(dsmc->sums, 0, dsmc->threads * sizeof *dsmc->sums);
 #pragma omp parallel num_threads((int)dsmc->threads) if (dsmc->count >= PARALLEL_MIN)
     do_share(dsmc, &flight, starts);

@@ -69,6 +69,7 @@ struct dsmc_settings dsmc_settings_completed(const struct scene *scene)
     struct dsmc_settings s = {.cell = NAN, .dt = NAN, .speed = NAN, .weight = 1, .reach = {2, 2}};
     const struct dsmc_settings *given = scene_settings(scene, "dsmc");
     if (given) s = *given;
+    if (scene->shear_rate != 0 && s.method == DSMC_DENSE) s.method = DSMC_PLAIN;
     if (isnan(s.speed)) s.speed = speed_greatest(scene);
     if (!(s.speed > 0)) s.speed = scene->radius_mean > 0 ? scene->radius_mean : 1;
     if (isnan(s.cell)) s.cell = cell_to_choose(scene, &s);
@@ -173,11 +174,24 @@ static void share_step(struct scene *scene)
     if (isnan(settings->dt)) settings->dt = dt;
 }
 
+/* Displaced grains keep their velocity where the flow has another one, and that counts as heat:
+ * T/gamma^2 is 12.4 instead of 7.4 at an area fraction of 0.25 and r = 0.9. */
+static void judge_shear(struct scene *scene, struct dsmc_settings *settings,
+                        struct findings *findings)
+{
+    if (scene->shear_rate == 0 || settings->method != DSMC_DENSE) return;
+    settings->method = DSMC_PLAIN;
+    findings_tell(findings, scene, FINDING_WARNING, "dsmc.method", "the dense form heats a gas "
+        "between sheared borders (shear_rate = %g) by two thirds too much, so plain is taken; set "
+        "dsmc.method = \"plain\", with cells of two diameters", scene->shear_rate);
+}
+
 void dsmc_settings_resolve(struct scene *scene, struct findings *findings)
 {
     struct dsmc_settings *settings = scene_settings(scene, "dsmc");
     if (!settings || scene->species_count == 0) return;
     if (scene->phase_count > 1) share_step(scene);
+    judge_shear(scene, settings, findings);
     const struct dsmc_settings s = dsmc_settings_completed(scene);
     settings->speed = s.speed;
     if (scene->placed.count > 0 || scene->source_count > 0) {   /* else the density is not known */

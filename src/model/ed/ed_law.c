@@ -4,9 +4,33 @@
  */
 #include "model/ed/ed_law.h"
 
+#include "model/contact.h"
 #include "model/ed/ed.h"
+#include "scene/resolve.h"
 
-/* A species that leaves its restitution open keeps its energy (resolve tells). */
+double ed_law_derived(const struct species *a, const struct species *b,
+                      const struct ed_settings *settings, bool wall)
+{
+    /* Springs in series and the mean of dashpots, as soft discs have them (md_law.c). */
+    const double stiffness = 2 * a->stiffness * b->stiffness / (a->stiffness + b->stiffness),
+                 damping = sqrt(a->damping * b->damping);
+    const double ra = resolve_radius_mean(a), rb = resolve_radius_mean(b);
+    const double ma = scene_mass(a, ra), mb = scene_mass(b, rb);
+    const double mass = wall ? ma : ma * mb / (ma + mb), radius = wall ? ra : ra * rb / (ra + rb);
+    if (settings->force == ED_LINEAR) {
+        return contact_linear(damping / (2 * sqrt(stiffness * mass)), true).restitution;
+    }
+    const double speed = settings->reference_speed;
+    const double length = contact_hertz_length(stiffness, mass, radius, speed);
+    return contact_hertz(damping * speed / (stiffness * length), true).restitution;
+}
+
+static bool is_damped(const struct species *species)
+{
+    return !isnan(species->damping) && !isnan(species->stiffness);
+}
+
+/* A species that leaves its restitution open keeps its energy, if nothing damps it. */
 static double restitution_of(const struct species *species, const struct ed_settings *settings)
 {
     if (!isnan(species->restitution)) return species->restitution;
@@ -14,11 +38,14 @@ static double restitution_of(const struct species *species, const struct ed_sett
 }
 
 static struct ed_pair mixed(const struct species *a, const struct species *b,
-                            const struct ed_settings *settings)
+                            const struct ed_settings *settings, bool wall)
 {
+    const bool derives = isnan(a->restitution) && isnan(b->restitution)
+                      && isnan(settings->restitution) && is_damped(a) && is_damped(b);
     /* Geometric means, as for soft discs. */
-    const double r2 = restitution_of(a, settings) * restitution_of(b, settings);
-    return (struct ed_pair){sqrt(r2), sqrt(a->friction * b->friction), settings->tangential};
+    const double r = derives ? ed_law_derived(a, b, settings, wall)
+                             : sqrt(restitution_of(a, settings) * restitution_of(b, settings));
+    return (struct ed_pair){r, sqrt(a->friction * b->friction), settings->tangential};
 }
 
 bool ed_law_create(struct ed_law *law, const struct scene *scene,
@@ -26,6 +53,7 @@ bool ed_law_create(struct ed_law *law, const struct scene *scene,
 {
     const uint32_t n = scene->species_count;
     *law = (struct ed_law){.species_count = n, .t_c = settings->t_c,
+                           .keeps_energy = settings->elastic == ED_ELASTIC_WHOLE,
                            .exponent = settings->exponent,
                            .per_speed = 1 / settings->reference_speed};
     if (!arena_array(arena, &law->pairs, (size_t)n * n)
@@ -35,7 +63,8 @@ bool ed_law_create(struct ed_law *law, const struct scene *scene,
         law->inertia_factor[a] = scene->species[a].inertia == INERTIA_SPHERE ? 0.4 : 0.5;
         for (uint32_t b = 0; b < n; b++) {
             struct ed_pair *pair = &law->pairs[a * n + b], *wall = &law->walls[a * n + b];
-            *pair = *wall = mixed(&scene->species[a], &scene->species[b], settings);
+            *pair = mixed(&scene->species[a], &scene->species[b], settings, false);
+            *wall = mixed(&scene->species[a], &scene->species[b], settings, true);
             if (!isnan(settings->wall_restitution)) wall->restitution = settings->wall_restitution;
             if (!isnan(settings->wall_friction)) wall->friction = settings->wall_friction;
             if (!isnan(settings->wall_tangential)) wall->tangential = settings->wall_tangential;

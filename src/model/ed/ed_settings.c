@@ -4,6 +4,9 @@
  */
 #include "model/ed/ed_settings.h"
 
+#include "model/ed/ed_law.h"
+#include "model/speed.h"
+
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -14,8 +17,17 @@ static const struct key keys[] = {
     {"t_c", KEY_REAL, AT(t_c), "nan", 0, NAN, "time", NULL,
      "cut-off time: a grain whose last contact is younger collides elastically; 0: plain ED, which "
      "stops where inelastic collapse begins; absent: 1e-2 sqrt(d/g), or 1e-5 d/v without gravity"},
+    {"elastic", KEY_CHOICE, AT(elastic), "normal", NAN, NAN, NULL, "normal|whole",
+     "what a contact within t_c keeps: normal, the normal speed, while friction goes on losing "
+     "energy (cooperative, eq. 7), so that rough beds at rest collide ever faster; whole, the "
+     "energy: what friction takes of the slip is given back along the normal, so that they rest at "
+     "about one contact in t_c"},
     {"restitution", KEY_REAL, AT(restitution), "nan", 0, 1, "1", NULL,
-     "restitution of grains that tell only a stiffness and a damping, for soft discs"},
+     "of grains that tell only a stiffness and a damping, as soft discs do; absent: derived from "
+     "them"},
+    {"force", KEY_CHOICE, AT(force), "linear", NAN, NAN, NULL, "linear|hertz",
+     "the law for which that stiffness and damping are meant: linear, its restitution is constant; "
+     "hertz, viscoelastic: it falls with impact speed"},
     {"tangential", KEY_REAL, AT(tangential), "0", -1, 1, "1", NULL,
      "beta0: greatest tangential restitution of grains with friction, 1: rough and elastic"},
     {"wall_restitution", KEY_REAL, AT(wall_restitution), "nan", 0, 1, "1", NULL,
@@ -24,11 +36,12 @@ static const struct key keys[] = {
      "friction at walls; from the species of grain and wall when absent"},
     {"wall_tangential", KEY_REAL, AT(wall_tangential), "nan", -1, 1, "1", NULL,
      "beta0 at walls; ed.tangential when absent"},
-    {"exponent", KEY_REAL, AT(exponent), "0", 0, 1, "1", NULL,
-     "1 - restitution grows with impact speed to this power (viscoelastic spheres: 0.2); 0: the "
-     "restitution is constant"},
-    {"reference_speed", KEY_REAL, AT(reference_speed), "1", KEY_POSITIVE, NAN, "speed", NULL,
-     "impact speed at which the restitution is that of the species, if exponent is not 0"},
+    {"exponent", KEY_REAL, AT(exponent), "nan", 0, 1, "1", NULL,
+     "1 - restitution grows with impact speed to this power; 0: the restitution is constant; "
+     "absent: 0, or 0.2 if it is derived from a hertz force"},
+    {"reference_speed", KEY_REAL, AT(reference_speed), "nan", KEY_POSITIVE, NAN, "speed", NULL,
+     "impact speed at which the restitution is that of the species, if exponent is not 0; absent: "
+     "1, or the greatest speed expected if it is derived"},
     {"cell", KEY_REAL, AT(cell), "nan", 1, 100, "1", NULL,
      "width of a cell in diameters of the largest grain; changes the speed only"},
     {"margin", KEY_REAL, AT(margin), "1", 0, 1, "1", NULL,
@@ -43,8 +56,11 @@ const struct key_group ed_settings_group = {
     sizeof(struct ed_settings)
 };
 
+/* 1 - r of viscoelastic spheres grows as v^(1/5) to leading order (stream, eq. 4). */
+static const double viscoelastic = 0.2;
+
 /* A speed that grains of this scene have at the start, or when they enter. */
-static double speed_at_start(const struct scene *scene)
+static double typical_speed(const struct scene *scene)
 {
     double sum2 = 0;
     for (uint32_t i = 0; i < scene->placed.count; i++) {
@@ -68,7 +84,7 @@ static double chosen_cut_off(const struct scene *scene)
 {
     const double g = hypot(scene->gravity[0], scene->gravity[1]), d = 2 * scene->radius_mean;
     if (g > 0) return 1e-2 * sqrt(d / g);
-    const double speed = speed_at_start(scene);
+    const double speed = typical_speed(scene);
     return speed > 0 ? 1e-5 * d / speed : 0;
 }
 
@@ -77,28 +93,48 @@ struct ed_settings ed_settings_of(const struct scene *scene)
     const struct ed_settings *given = scene_settings(scene, ed_settings_group.name);
     struct ed_settings settings = {
         .t_c = NAN, .restitution = NAN, .wall_restitution = NAN, .wall_friction = NAN,
-        .wall_tangential = NAN,
-        .reference_speed = 1, .cell = NAN, .margin = 1
+        .wall_tangential = NAN, .exponent = NAN, .reference_speed = NAN, .cell = NAN, .margin = 1
     };
     if (given) settings = *given;
     if (isnan(settings.t_c)) settings.t_c = chosen_cut_off(scene);
+    const bool derives = settings.force == ED_HERTZ && isnan(settings.restitution);
+    if (isnan(settings.exponent)) settings.exponent = derives ? viscoelastic : 0;
+    if (isnan(settings.reference_speed)) {
+        const double speed = derives ? speed_greatest(scene) : 1;
+        settings.reference_speed = speed > 0 ? speed : 1;
+    }
     return settings;
 }
 
-void ed_settings_resolve(struct scene *scene, struct findings *findings)
+/* Species without a restitution: 1 where nothing is damped, else what their dashpot makes. */
+static void complete_restitution(struct scene *scene, const struct ed_settings *settings,
+                                 struct findings *findings)
 {
     for (uint32_t k = 0; k < scene->species_count; k++) {
         struct species *species = &scene->species[k];
-        if (!isnan(species->restitution) || !isnan(ed_settings_of(scene).restitution)) continue;
-        char key[64];
-        snprintf(key, sizeof key, "grains.[%u].restitution", k);
+        if (!isnan(species->restitution) || !isnan(settings->restitution)) continue;
+        char key[64], speed[100] = "";
+        snprintf(key, sizeof key, "grains.[%u].damping", k);
         if (isnan(species->damping) || species->damping == 0) {
             species->restitution = 1;
             continue;
         }
-        findings_tell(findings, scene, FINDING_ERROR, key, "hard discs need a restitution; this "
-            "species has only a damping, which belongs to soft discs; give ed.restitution");
+        if (settings->exponent > 0) {
+            snprintf(speed, sizeof speed, " at %.4g %s", settings->reference_speed,
+                     scene_unit(scene, "speed"));
+        }
+        findings_tell(findings, scene, FINDING_WARNING, key, "hard discs take their restitution "
+            "from stiffness and damping, as of a %s force: %.4g between grains, %.4g at walls%s; "
+            "ed.restitution sets another", settings->force == ED_HERTZ ? "hertz" : "linear",
+            ed_law_derived(species, species, settings, false),
+            ed_law_derived(species, species, settings, true), speed);
     }
+}
+
+void ed_settings_resolve(struct scene *scene, struct findings *findings)
+{
+    const struct ed_settings settings = ed_settings_of(scene);
+    complete_restitution(scene, &settings, findings);
     for (uint32_t w = 0; w < scene->wall_count; w++) {
         const struct wall *wall = &scene->walls[w];
         if (wall->frequency == 0 || (wall->amplitude_x == 0 && wall->amplitude_y == 0)) continue;
@@ -107,12 +143,16 @@ void ed_settings_resolve(struct scene *scene, struct findings *findings)
         break;
     }
     struct ed_settings *given = scene_settings(scene, ed_settings_group.name);
-    if (given) given->t_c = ed_settings_of(scene).t_c;
-    const double need = 3 * 2 * scene->radius_max * 1.001;
+    if (given) {
+        given->t_c = settings.t_c;
+        given->exponent = settings.exponent;
+        given->reference_speed = settings.reference_speed;
+    }
+    const double need = 4 * 2 * scene->radius_max * 1.001;      /* four cells: ed_cells.c */
     const bool narrow_x = scene->left == BORDER_PERIODIC && scene->box[2] - scene->box[0] < need,
                narrow_y = scene->bottom == BORDER_PERIODIC && scene->box[3] - scene->box[1] < need;
     if (narrow_x || narrow_y) {
         findings_tell(findings, scene, FINDING_ERROR, "box", "a periodic box must be wider than "
-            "three of the largest grains (%g) for the event-driven model", need);
+            "four of the largest grains (%g) for the event-driven model", need);
     }
 }

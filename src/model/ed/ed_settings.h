@@ -7,15 +7,20 @@
 
 #include "scene/scene.h"
 
+enum ed_force { ED_LINEAR, ED_HERTZ };
+enum ed_elastic { ED_ELASTIC_NORMAL, ED_ELASTIC_WHOLE };
 enum ed_vectors { ED_VECTORS_AUTO, ED_VECTORS_NONE };
 
 struct ed_settings {
     double t_c;                 /* TC rule: after a contact a grain stays elastic for so long */
-    double restitution;         /* of species that have none of their own; NAN */
+    int    elastic;             /* enum ed_elastic: what a contact within t_c keeps */
+    double restitution;         /* of species that have none of their own; NAN: derived */
+    int    force;               /* enum ed_force: what their stiffness and damping mean */
     double tangential;          /* beta0, largest tangential restitution */
     double wall_restitution, wall_friction, wall_tangential;    /* NAN: from the species */
     double exponent;            /* 1 - r grows with impact speed to this power; 0: constant r */
-    double reference_speed;     /* at which r is the species' restitution */
+    double reference_speed;     /* at which r is the species' restitution; never NAN once resolved,
+                                 * nor is the exponent */
     double cell;                /* width of a cell in largest diameters; NAN: chosen */
     int    vectors;             /* enum ed_vectors */
     double margin;              /* how far a grain may leave its cell, share of the spare width */

@@ -231,6 +231,13 @@ bool lga_fill_placed(struct lga *lga, struct error *error);
 void lga_fill_sources(struct lga *lga);
 void lga_fill_release_trapped(struct lga *lga);
 
+/* lga_look.c: `observe` and `sample` of the model. */
+struct field;
+struct grains;
+void lga_look_list(const void *state, struct grains *out);
+bool lga_look_sample(const void *state, struct field *field);
+char lga_look_ground(const void *state, double x, double y);
+
 /* lga_step.c: one tick by any rules, and the streaming that they share.  Allocation takes an empty
  * `lga` whose lattice, rule and sites are set. */
 bool lga_step_is_fast(const struct lga_rule *rule);     /* is there a fast form? */

@@ -183,7 +183,9 @@ static void prepare_ends(struct band *band)
         place[1] = slot(band, starts[end]);
         place[2] = slot(band, starts[end] + 1);
         place[3] = band->slots + slot_words(band->lga->bits);
-        for (int i = 0; i < HALO + 2; i++) survey(band, row_of(band, starts[end] - 1 + i), place[i]);
+        for (int i = 0; i < HALO + 2; i++) {
+            survey(band, row_of(band, starts[end] - 1 + i), place[i]);
+        }
         for (int i = 0; i < HALO; i++) {
             uint64_t *const near[3] = {place[i], place[i + 1], place[i + 2]};
             collide(band, row_of(band, starts[end] + i), near);
@@ -215,12 +217,13 @@ void lga_bits_gmlg_step(struct lga *lga, const struct lga_kernel *kernel)
 {
     const uint32_t bands = lga->bits->bands;
     uint64_t collisions = 0, refused = 0, gone = 0;
-    #pragma omp parallel for schedule(static, 1)
+    #pragma omp parallel for schedule(static, 1) if (bands > 1)
     for (uint32_t b = 0; b < bands; b++) {
         struct band band = band_of(lga, kernel, b);
         prepare_ends(&band);
     }
-    #pragma omp parallel for schedule(static, 1) reduction(+ : collisions, refused, gone)
+    #pragma omp parallel for schedule(static, 1) reduction(+ : collisions, refused, gone) \
+        if (bands > 1)
     for (uint32_t b = 0; b < bands; b++) {
         struct band band = band_of(lga, kernel, b);
         pass_band(&band);

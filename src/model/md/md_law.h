@@ -38,23 +38,6 @@ struct md_law {
     bool   tangential, spring;  /* is there a tangential force, with a memory? */
 };
 
-/* One head-on collision.  linear: lengths in units of v / omega0, times in 1 / omega0 with
- * omega0^2 = k / m; hertz: lengths in L = (m v^2 / (alpha sqrt(R)))^(2/5), times in L / v. */
-struct md_collision { double restitution, time, overlap; };
-
-/* `damping` is eta / omega0 with eta = c / (2 m). */
-struct md_collision md_law_linear_collision(double damping, bool clip);
-
-/* `damping` is beta v / (alpha L). */
-struct md_collision md_law_hertz_collision(double damping, bool clip);
-
-/* The damping that gives this restitution (clipped into 0.01 .. 1). */
-double md_law_linear_damping(double restitution, bool clip);
-double md_law_hertz_damping(double restitution, bool clip);
-
-/* Length L of a Hertz collision. */
-double md_law_hertz_length(double stiffness, double mass, double radius, double speed);
-
 /* Fills the table [species][species] from the resolved scene. */
 void md_law_pairs(const struct scene *scene, const struct md_settings *settings,
                   struct md_pair_law *pairs);

@@ -1,12 +1,12 @@
-/* stress.h - hard cases: scenes that say themselves what must hold while they run.
+/* hard.h - hard cases: scenes that say themselves what must hold while they run.
  *
- * A case is a scene with a group `stress` (scene.h).  Each entry of `stress.models` is one run: a
+ * A case is a scene with a group `hard` (scene.h).  Each entry of `hard.models` is one run: a
  * model's name and keys that this run sets.  Every look compares all that the scene asks for; the
  * first thing that does not hold ends the run, with the grain, the place and the time.
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#ifndef BENCH_STRESS_H
-#define BENCH_STRESS_H
+#ifndef HARD_H
+#define HARD_H
 
 #include "base/error.h"
 
@@ -15,7 +15,7 @@
 #include <stdint.h>
 
 /* X(name, what is compared with its bound) - the value is the worst of all looks */
-#define STRESS_CHECKS(X)                                                                \
+#define HARD_CHECKS(X)                                                                \
     X(mass,      "grains that are missing or too many, as a share of all")              \
     X(inside,    "centres outside of a solid border or of `within`, in radii")          \
     X(momentum,  "change of the momentum")                                              \
@@ -31,25 +31,25 @@
     X(energies,  "difference of the kinetic energy from that of the second run")        \
     X(ends,      "the run ends as it must")
 
-enum stress_check {
-#define X(name, doc) STRESS_CHECK_##name,
-    STRESS_CHECKS(X)
+enum hard_check {
+#define X(name, doc) HARD_CHECK_##name,
+    HARD_CHECKS(X)
 #undef X
-    STRESS_CHECKS_COUNT
+    HARD_CHECKS_COUNT
 };
 
-struct stress_value {
+struct hard_value {
     bool   asked;               /* the scene asks for it */
     double worst, low, high;    /* must lie from low to high; NAN: no such limit */
 };
 
-enum { STRESS_RUN_MAX = 256 };
+enum { HARD_RUN_MAX = 256 };
 
-struct stress_result {
-    char   run[STRESS_RUN_MAX]; /* "ed ed.t_c=0" */
+struct hard_result {
+    char   run[HARD_RUN_MAX]; /* "ed ed.t_c=0" */
     bool   passed;
-    struct stress_value values[STRESS_CHECKS_COUNT];
-    enum stress_check tightest; /* the check that came nearest to its limit, or the one that failed */
+    struct hard_value values[HARD_CHECKS_COUNT];
+    enum hard_check tightest; /* the check that came nearest to its limit, or the one that failed */
     char   why[700];            /* what does not hold, which grain, where, when; "" if passed */
     double wall, cpu;           /* seconds */
     uint64_t steps;
@@ -57,20 +57,20 @@ struct stress_result {
 
 /* How many runs the case makes, and whether it is a slow one.  0 with an error: no such scene, or
  * no case. */
-uint32_t stress_runs(const char *scene, bool *slow, struct error *error);
+uint32_t hard_runs(const char *scene, bool *slow, struct error *error);
 
 /* Makes run number `index` of the case.  False only if it could not be tried at all; whether it
  * passed is in the result. */
-bool stress_try(const char *scene, uint32_t index, struct stress_result *result,
+bool hard_try(const char *scene, uint32_t index, struct hard_result *result,
                 struct error *error);
 
 /* The names of the built-in cases; NULL past the last. */
-const char *stress_name(uint32_t index, char *name, size_t size);
+const char *hard_name(uint32_t index, char *name, size_t size);
 
-const char *stress_check_name(enum stress_check check);
-const char *stress_check_doc(enum stress_check check);
+const char *hard_check_name(enum hard_check check);
+const char *hard_check_doc(enum hard_check check);
 
 /* How near the value is to its limit: 0 far, 1 at it, more: it does not hold. */
-double stress_strain(const struct stress_value *value);
+double hard_strain(const struct hard_value *value);
 
 #endif

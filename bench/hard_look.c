@@ -1,10 +1,10 @@
-/* stress_look.c - see stress_look.h.
+/* hard_look.c - see hard_look.h.
  *
  * Overlaps are found on a grid of cells as wide as the largest grain; a pair may be met twice in a
  * narrow periodic box, which does not change the largest.
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
-#include "bench/stress_look.h"
+#include "bench/hard_look.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -24,7 +24,7 @@ static double mass_of(const struct grains *grains)
     return mass;
 }
 
-bool stress_look_take(struct stress_look *look, const struct simulation *sim, struct error *error)
+bool hard_look_take(struct hard_look *look, const struct simulation *sim, struct error *error)
 {
     look->scene = sim->phase_scene;
     look->counters = simulation_count(sim);
@@ -47,11 +47,11 @@ bool stress_look_take(struct stress_look *look, const struct simulation *sim, st
     return true;
 }
 
-bool stress_look_begin(struct stress_look *look, const struct simulation *sim, struct error *error)
+bool hard_look_begin(struct hard_look *look, const struct simulation *sim, struct error *error)
 {
-    *look = (struct stress_look){.scene = sim->scene};
+    *look = (struct hard_look){.scene = sim->scene};
     look->first = simulation_count(sim);
-    if (!stress_look_take(look, sim, error)) return false;
+    if (!hard_look_take(look, sim, error)) return false;
     look->energy_least = total(&look->first);
     look->momentum_scale = sqrt(2 * mass_of(&look->grains) * look->first.kinetic_energy);
     for (uint32_t k = 0; k < look->grains.count; k++) {
@@ -69,7 +69,7 @@ bool stress_look_begin(struct stress_look *look, const struct simulation *sim, s
     return true;
 }
 
-void stress_look_end(struct stress_look *look)
+void hard_look_end(struct hard_look *look)
 {
     grains_free(&look->grains);
     free(look->start_x);
@@ -84,30 +84,30 @@ static double share(double change, double scale)
     return change == 0 ? 0 : change / scale;            /* a change of nothing is infinite */
 }
 
-double stress_look_energy_rise(struct stress_look *look)
+double hard_look_energy_rise(struct hard_look *look)
 {
     const double now = total(&look->counters), rise = now - look->energy_least;
     look->energy_least = fmin(look->energy_least, now);
     return share(fmax(rise, 0), look->motion);
 }
 
-double stress_look_energy_change(const struct stress_look *look)
+double hard_look_energy_change(const struct hard_look *look)
 {
     return share(fabs(total(&look->counters) - total(&look->first)), look->motion);
 }
 
-double stress_look_momentum_change(const struct stress_look *look)
+double hard_look_momentum_change(const struct hard_look *look)
 {
     const struct counters *now = &look->counters, *first = &look->first;
     return share(hypot(now->momentum_x - first->momentum_x, now->momentum_y - first->momentum_y),
                  look->momentum_scale);
 }
 
-double stress_look_loss(const struct stress_look *look)
+double hard_look_loss(const struct hard_look *look)
 {
     const struct counters *now = &look->counters, *first = &look->first;
-    const double whole = (double)(first->grains + now->grains_in);
-    const double here = (double)(now->grains + now->grains_out);
+    const double whole = (double)(first->grains + now->grains_in - first->grains_in);
+    const double here = (double)(now->grains + now->grains_out - first->grains_out);
     const double seen = (double)look->grains.count - (double)now->grains;
     return share(fabs(here - whole) + fabs(seen), fmax(whole, 1));
 }
@@ -125,7 +125,7 @@ static void periods(const struct scene *scene, double period[2])
     period[1] = scene->bottom == BORDER_PERIODIC ? box[3] - box[1] : 0;
 }
 
-double stress_look_travel(const struct stress_look *look)
+double hard_look_travel(const struct hard_look *look)
 {
     const struct grains *g = &look->grains;
     double period[2], sum = 0;
@@ -143,26 +143,26 @@ double stress_look_travel(const struct stress_look *look)
 
 /* ---- grains to blame ----------------------------------------------------------------------- */
 
-static struct stress_blame blame(const struct grains *grains, uint32_t k, double value)
+static struct hard_blame blame(const struct grains *grains, uint32_t k, double value)
 {
-    return (struct stress_blame){.value = value, .grain = grains->id[k], .x = grains->x[k],
+    return (struct hard_blame){.value = value, .grain = grains->id[k], .x = grains->x[k],
                                  .y = grains->y[k]};
 }
 
-struct stress_blame stress_look_broken_number(const struct stress_look *look)
+struct hard_blame hard_look_broken_number(const struct hard_look *look)
 {
     const struct grains *g = &look->grains;
     for (uint32_t k = 0; k < g->count; k++) {
         const double sum = g->x[k] + g->y[k] + g->vx[k] + g->vy[k] + g->spin[k] + g->angle[k];
         if (!isfinite(sum)) return blame(g, k, INFINITY);
     }
-    return (struct stress_blame){0};
+    return (struct hard_blame){0};
 }
 
-struct stress_blame stress_look_fastest(const struct stress_look *look)
+struct hard_blame hard_look_fastest(const struct hard_look *look)
 {
     const struct grains *g = &look->grains;
-    struct stress_blame worst = {0};
+    struct hard_blame worst = {0};
     for (uint32_t k = 0; k < g->count; k++) {
         const double speed = hypot(g->vx[k], g->vy[k]);
         if (speed > worst.value) worst = blame(g, k, speed);
@@ -170,17 +170,17 @@ struct stress_blame stress_look_fastest(const struct stress_look *look)
     return worst;
 }
 
-struct stress_blame stress_look_outside(const struct stress_look *look)
+struct hard_blame hard_look_outside(const struct hard_look *look)
 {
     const struct scene *scene = look->scene;
     const struct grains *g = &look->grains;
-    const double *box = scene->box, *within = scene->stress.within, far = INFINITY;
+    const double *box = scene->box, *within = scene->hard.within, far = INFINITY;
     double limits[4] = {
         scene->left == BORDER_WALL ? box[0] : -far, scene->bottom == BORDER_WALL ? box[1] : -far,
         scene->right == BORDER_WALL ? box[2] : far, scene->top == BORDER_WALL ? box[3] : far,
     };
     for (int s = 0; s < 4 && isfinite(within[s]); s++) limits[s] = within[s];
-    struct stress_blame worst = {0};
+    struct hard_blame worst = {0};
     for (uint32_t k = 0; k < g->count; k++) {
         const double out = fmax(fmax(limits[0] - g->x[k], g->x[k] - limits[2]),
                                 fmax(limits[1] - g->y[k], g->y[k] - limits[3])) / g->radius[k];
@@ -236,7 +236,7 @@ static bool grid_make(struct grid *grid, const struct scene *scene, const struct
 }
 
 static void compare_pair(const struct grid *grid, const struct grains *g, uint32_t a, uint32_t b,
-                         struct stress_blame *worst)
+                         struct hard_blame *worst)
 {
     const double dx = nearest_image(g->x[a] - g->x[b], grid->period[0]);
     const double dy = nearest_image(g->y[a] - g->y[b], grid->period[1]);
@@ -248,7 +248,7 @@ static void compare_pair(const struct grid *grid, const struct grains *g, uint32
 }
 
 static void compare_around(const struct grid *grid, const struct grains *g, uint32_t a,
-                           struct stress_blame *worst)
+                           struct hard_blame *worst)
 {
     const uint32_t cell = cell_of(grid, g, a), cx = cell % grid->nx, cy = cell / grid->nx;
     for (uint32_t row = 0; row < 3; row++) {
@@ -266,7 +266,7 @@ static void compare_around(const struct grid *grid, const struct grains *g, uint
 }
 
 /* Grains and the walls that are there now. */
-static void compare_walls(const struct stress_look *look, struct stress_blame *worst)
+static void compare_walls(const struct hard_look *look, struct hard_blame *worst)
 {
     const struct grains *g = &look->grains;
     for (uint32_t w = 0; w < look->scene->wall_count; w++) {
@@ -283,9 +283,9 @@ static void compare_walls(const struct stress_look *look, struct stress_blame *w
     }
 }
 
-struct stress_blame stress_look_overlap(const struct stress_look *look)
+struct hard_blame hard_look_overlap(const struct hard_look *look)
 {
-    struct stress_blame worst = {0};
+    struct hard_blame worst = {0};
     struct grid grid = {0};
     const struct grains *g = &look->grains;
     if (g->count > 0 && grid_make(&grid, look->scene, g)) {
@@ -295,6 +295,6 @@ struct stress_blame stress_look_overlap(const struct stress_look *look)
     free(grid.head);
     free(grid.next);
     compare_walls(look, &worst);
-    if (blind) worst = (struct stress_blame){.value = INFINITY, .with = "(not enough memory)"};
+    if (blind) worst = (struct hard_blame){.value = INFINITY, .with = "(not enough memory)"};
     return worst;
 }
