@@ -167,12 +167,12 @@ static void test_a_sample_holds_what_the_list_of_grains_holds(void **unused)
         simulation_advance(&sim, 5, UINT64_MAX, NULL);
         const struct counters counters = simulation_count(&sim);
         struct grains grains = look(&sim);
-        double mean[2] = {0}, sampled[2] = {0}, sum[SAMPLES] = {0};
+        double mean[2] = {0}, sampled[2] = {0}, sum[SAMPLE_COMPONENTS] = {0};
         struct field field;
-        CHECK(field_create(&field, -20, -20, 5, 8, 8, SAMPLES, NULL));
+        CHECK(field_create(&field, -20, -20, 5, 8, 8, SAMPLE_COMPONENTS, NULL));
         CHECK(sim.model->sample(sim.state, &field));
         for (int k = 0; k < 64; k++) {
-            for (int c = 0; c < SAMPLES; c++) sum[c] += field.values[c * 64 + k];
+            for (int c = 0; c < SAMPLE_COMPONENTS; c++) sum[c] += field.values[c * 64 + k];
             sampled[0] += field.values[k] * (-17.5 + 5 * (k % 8)) / grains.count;
             sampled[1] += field.values[k] * (-17.5 + 5 * (k / 8)) / grains.count;
         }

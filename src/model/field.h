@@ -32,7 +32,7 @@ enum field_sample {
     SAMPLE_COUNT, SAMPLE_MASS, SAMPLE_AREA, SAMPLE_MOMENTUM_X, SAMPLE_MOMENTUM_Y,
     SAMPLE_ENERGY,              /* m v^2 */
     SAMPLE_SPEED,               /* |v| */
-    SAMPLES
+    SAMPLE_COMPONENTS
 };
 
 bool field_create(struct field *field, double x0, double y0, double cell, uint32_t nx,

@@ -23,9 +23,9 @@ static bool take_sample(const struct simulation *sim, struct grains *grains, str
         const double cell = fmax(width, height) / SAMPLE_SIDE;
         grains_free(grains);
         if (!field_create(sample, box[0], box[1], cell, (uint32_t)ceil(width / cell - 1e-9),
-                          (uint32_t)ceil(height / cell - 1e-9), SAMPLES, error)) return false;
+                          (uint32_t)ceil(height / cell - 1e-9), SAMPLE_COMPONENTS, error)) return false;
     }
-    memset(sample->values, 0, sizeof *sample->values * SAMPLES * sample->nx * sample->ny);
+    memset(sample->values, 0, sizeof *sample->values * SAMPLE_COMPONENTS * sample->nx * sample->ny);
     grains->time = sample->time = simulation_count(sim).time;
     return sim->model->sample(sim->state, sample)
         || error_set(error, "not enough memory for a look at the lattice");

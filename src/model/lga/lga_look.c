@@ -199,7 +199,7 @@ bool lga_look_sample(const void *state, struct field *field)
     const uint32_t rows = lga->lattice.rows, columns = lga->lattice.columns;
     const bool turned = lga->lattice.turned;
     struct sampling s = {.lga = lga, .field = field};
-    assert(field->components == SAMPLES);
+    assert(field->components == SAMPLE_COMPONENTS);
     uint32_t *cells = malloc(((size_t)rows + 2 * (size_t)columns) * sizeof *cells);
     if (!cells) return false;
     s.row_cell = cells;
