@@ -33,7 +33,8 @@ static void test_a_chart_saves_every_point_of_every_curve(void **unused)
     size_t size;
     char *text = file_load(path, 1 << 20, &size, &error);
     CHECK(strncmp(text, "curve,x,y,error\n# units: ,x [s],y,\nfirst; ;quoted;,0,0,nan\n", 58) == 0);
-    CHECK(strstr(text, "\nfirst; ;quoted;,299,37.375,nan\nsecond,0.3333333333333333,2,0.25\nlaw,0,"));
+    CHECK(strstr(text, "\nfirst; ;quoted;,299,37.375,nan\n"
+                       "second,0.3333333333333333,2,0.25\nlaw,0,"));
     CHECK(strstr(text, "\nlaw,4,12,nan\n"));
     CHECK_NEAR(chart_at(&chart, 0, 10.5), 1.3125, 1e-12);
     CHECK_NEAR(chart_at(&chart, 2, 2), 6, 1e-12);

@@ -12,7 +12,7 @@ static uint32_t draw(struct rng *rng, enum distribution_law law, double p)
     double product = 1 - u;
     uint32_t c = 0;
     switch (law) {
-    case DISTRIBUTION_poisson:          /* Knuth: how many factors until the product is below e^-p */
+    case DISTRIBUTION_poisson:          /* how many factors until the product is below e^-p */
         for (; product > exp(-p); c++) product *= 1 - rng_uniform(rng);
         return c;
     case DISTRIBUTION_exponential: return (uint32_t)(-p * log1p(-u));

@@ -90,8 +90,8 @@ static void test_flying_grains_press_by_their_momentum_about_the_mean(void **unu
 static void test_a_ring_of_grains_leaves_the_gap_it_was_built_with(void **unused)
 {
     (void)unused;
-    /* Discs of radius 0.05 whose centres lie from 1 + 0.45 on around an obstacle of radius 1: the gap
-     * is 0.4; with centres from 1.05 on there is none. */
+    /* Discs of radius 0.05 whose centres lie from 1 + 0.45 on around an obstacle of radius 1: the
+     * gap is 0.4; with centres from 1.05 on there is none. */
     static const double from[] = {0.45, 0.05}, wanted[] = {0.4, 0};
     for (int k = 0; k < 2; k++) {
         struct grains grains = some(20000, 0);
@@ -118,8 +118,8 @@ static void test_a_ring_of_grains_leaves_the_gap_it_was_built_with(void **unused
 static void test_the_papers_gas_cools_at_its_rate(void **unused)
 {
     (void)unused;
-    /* cooperative, section 3.1: d = 1 mm, v = 0.2047 m/s, nu = 0.25, r = 0.8 give 23.24/s, where its
-     * misprinted 2 (1 - r^2) would give 32.9; the paper's own rounding is worth 0.2 %. */
+    /* cooperative, section 3.1: d = 1 mm, v = 0.2047 m/s, nu = 0.25, r = 0.8 give 23.24/s, where
+     * its misprinted 2 (1 - r^2) would give 32.9; the paper's own rounding is worth 0.2 %. */
     CHECK_NEAR(1 / haff_time(0.25, 0.001, 0.2047 * 0.2047 / 2, 0.8), 23.24, 0.05);
     /* And t0 = 4 / (omega (1 - r^2)), since a collision costs (1 - r^2) T on the average. */
     CHECK_NEAR(haff_time(0.3, 1, 2, 0.7) * haff_frequency(0.3, 1, 2) * (1 - 0.49), 4, 1e-12);

@@ -148,9 +148,9 @@ static void test_the_tail_of_a_heap_is_that_of_the_equation(void **unused)
 static void test_the_tails_errors_are_those_of_its_scatter(void **unused)
 {
     (void)unused;
-    /* The same with heights rough by +-1: over many seeds the fitted values scatter by what each fit
-     * tells of itself.  Errors of errors over 40 seeds are 11 %: three of these, and 10 % as the
-     * roughness is of h, the fit of x. */
+    /* The same with heights rough by half a unit: over many seeds the fitted values scatter by what
+     * each fit tells of itself.  Errors of errors over 40 seeds are 11 %: three of these,
+     * and 10 % as the roughness is of h, the fit of x. */
     enum { SEEDS = 40 };
     const struct heap_tail wanted = {.slope = 0.54, .tail = 15, .height = 80};
     double sum = 0, squares = 0, told = 0;

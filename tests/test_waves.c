@@ -52,8 +52,8 @@ static void test_a_wave_shows_at_its_frequency_alone(void **unused)
     CHECK(bins == LOOKS / 2);
     CHECK_NEAR(step, 1 / 512.0, 1e-15);
     for (uint32_t k = 1; k <= bins; k++) {
-        /* The window lets a line leak into its two neighbours, nowhere else; in the middle its power
-         * is (amplitude * count / 2)^2 / count. */
+        /* The window lets a line leak into its two neighbours, nowhere else; in the middle its
+         * power is (amplitude * count / 2)^2 / count. */
         if (k == 64) CHECK_NEAR(power[k - 1], LOOKS, 1e-6 * LOOKS);
         else if (k < 62 || k > 66) CHECK(power[k - 1] < 1e-12 * LOOKS);
     }
@@ -83,8 +83,8 @@ static void test_a_random_walk_has_exponent_two_and_noise_none(void **unused)
         struct error error;
         CHECK(waves_spectrum(both[k], 0, &power, &bins, &step, &error));
         const struct stats_line line = waves_exponent(power, bins, step, 2.4e-3, 5e-2);
-        /* A walk: 1 / (4 sin^2(pi f)), to 1 % of 1/f^2 in this band.  16 series: the mean power of a
-         * bin of 2 modes or more scatters by 18 %, the slope over 32 bins by about 0.03. */
+        /* A walk: 1 / (4 sin^2(pi f)), to 1 % of 1/f^2 in this band.  16 series: the mean power of
+         * a bin of 2 modes or more scatters by 18 %, the slope over 32 bins by about 0.03. */
         CHECK_NEAR(line.slope, -2.0 * k, 0.12);
         CHECK(line.slope_error < 0.06);
         free(power);

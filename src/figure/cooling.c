@@ -12,7 +12,7 @@
 
 #include <stdio.h>
 
-/* MODELS section 2: 99,856 hard discs, r = 0.8, K/K0 at t0. */
+/* By an independent program: 99,856 hard discs, r = 0.8, K/K0 at t0. */
 static const double discs_at_t0 = 0.2649;
 
 static void begin(struct chart *chart, const char *title)
@@ -82,8 +82,8 @@ static bool compare_models(struct figure_job *job, enum gas_kind last, struct er
     }
     if (done) {
         /* ED: its own reference, known to 1 %, and three times the scatter of N energies.  The
-         * others: within 5 % of ED at t0, 10 % at two (MODELS section 3); HSMC, of which no number
-         * is known, within twice as much. */
+         * others: within 5 % of ED at t0, 10 % at two; HSMC, of which no number is known, within
+         * twice as much. */
         const double ed = chart_at(&chart, 1, 1), noise = 3.0 / side;
         figure_near(job, "K/K0 at t0 by ED", ed, discs_at_t0, discs_at_t0 * (0.01 + noise));
         for (uint32_t kind = GAS_DSMC; kind <= last; kind++) {

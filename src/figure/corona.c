@@ -39,12 +39,12 @@ static bool picture(struct figure_job *job, struct strip *strip, const char *suf
     return strip_save(strip, path, error);
 }
 
-/* Fills the gap measure from `from` to the end, in 40 looks. */
+/* Fills the gap measure from `from` to the end, in 48 looks. */
 static bool look_at_gap(struct lab *lab, const struct flow *flow, struct gap *gap,
                         struct error *error)
 {
     const double center[2] = {0, 0};
-    const uint32_t looks = 40;
+    const uint32_t looks = 47;          /* not in step with the rows of the stream */
     if (!gap_create(gap, center, flow->radius, 3, 30, error)) return false;
     for (uint32_t k = 0; k <= looks; k++) {
         const double t = flow->start + (flow->end - flow->start) * k / looks;
@@ -84,7 +84,7 @@ static bool snapshot(struct figure_job *job, bool flat, struct error *error)
     if (done) {
         const double slow = speed_before(&lab.footage.grains, &flow) / flow.speed;
         figure_hold(job, slow < 0.8, "grains before the obstacle are slowed down, to %.2f v", slow);
-        /* "Velocities are very small" there, in the paper; MODELS section 5: a corona at rest needs
+        /* "Velocities are very small" there, in the paper; but a corona at rest needs
          * a damping a hundred times that of Table I. */
         if (slow > 0.2) {
             figure_miss(job, slow > 0.3, "the paper's corona almost at rest is not reproduced");
@@ -135,7 +135,7 @@ bool corona_speeds(struct figure_job *job, struct error *error)
         done = picture(job, &strip, "", error);
         const double widths[] = {gap_width(&gaps[0]), gap_width(&gaps[1]), gap_width(&gaps[2])};
         if (!(widths[2] > 0.5)) {
-            /* MODELS section 5: no gap with Table I. */
+            /* Independent programs have no gap with Table I either. */
             figure_miss(job, widths[2] < 0.3, "the paper's gap at 200 cm/s is not reproduced: "
                         "%.2f, %.2f, %.2f cm at 2000, 700, 200 cm/s", widths[0], widths[1],
                         widths[2]);
@@ -217,7 +217,7 @@ static bool average(struct figure_job *job, double radius, const char *field, co
         && gap_create(&gap, center, radius, 2, 20, error)
         && mapper_open(&mapper, lab.setup.scene, &lab.setup.scene->view,
                        &lab.setup.scene->measure, 1u << MAPPER_BIT_png, error);
-    const uint32_t looks = job->quick ? 40 : 200;
+    const uint32_t looks = job->quick ? 43 : 211;        /* likewise */
     for (uint32_t k = 0; done && k <= looks; k++) {
         done = lab_go(&lab, flow.start + (flow.end - flow.start) * k / looks, error);
         if (!done) break;

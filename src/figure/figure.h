@@ -44,7 +44,7 @@ struct figure_job;
     X("stream-3",       scattering_spin,      "angular momentum by angle, L(Theta)")            \
     X("stream-4",       scattering_momentum,  "momentum by angle, |p|(Theta)")                  \
     X("stream-5",       stream_density,       "force against the density of the stream")        \
-    X("stream-6",       stream_radius,        "force against the size of round and flat obstacles") \
+    X("stream-6",       stream_radius,        "force against the size of the obstacle")   \
     X("stream-7",       corona_round,         "the corona before a round obstacle")             \
     X("stream-8",       corona_flat,          "the corona before a flat obstacle")              \
     X("stream-9",       stream_speed,         "force against the speed of the stream")          \
@@ -123,7 +123,7 @@ void figure_hold(struct figure_job *job, bool holds, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* What the paper says and the corrected physics does not give.  `known` says that what came out
- * is what MODELS expects. */
+ * is what independent programs give too. */
 void figure_miss(struct figure_job *job, bool known, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

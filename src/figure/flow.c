@@ -23,7 +23,8 @@ struct flow flow_paper(const struct figure_job *job)
 
 void flow_wish(struct flow *flow, struct lab_wish *wish)
 {
-    /* With b = 5 R_ob the force is 8 % too small: what is pushed aside finds nothing to push back. */
+    /* With b = 5 R_ob the force is 8 % too small: what is pushed aside finds nothing to push
+     * back. */
     if (!(flow->width > 0)) flow->width = fmax(4, 8 * flow->radius);
     /* Grains come back from a round obstacle by less than its diameter, but the corona of a flat
      * one stands out by its length. */

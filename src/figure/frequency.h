@@ -1,5 +1,5 @@
-/* frequency.h - how many collisions each grain had in a window of time, as curves, laws and verdicts
- * (cooperative 12 and 14).
+/* frequency.h - how many collisions each grain had in a window of time, as curves, laws and
+ * verdicts (cooperative 12 and 14).
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */

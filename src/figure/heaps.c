@@ -1,5 +1,5 @@
-/* heaps.c - heaps of HSMC and of the sandpile lattice gas, their profiles against eq. 8 of the paper
- * (simplified 7, 8 and the profile of its section 2.1).
+/* heaps.c - heaps of HSMC and of the sandpile lattice gas, their profiles against eq. 8 of the
+ * paper (simplified 7, 8 and the profile of its section 2.1).
  *
  * HSMC in its own units: d = g = 1, a grain a time unit.  Of the lattice gas, nodes and ticks.
  *
@@ -108,8 +108,8 @@ bool heaps_hsmc_snapshot(struct figure_job *job, struct error *error)
     heap_free(&heap);
     strip_free(&strip);
     lab_close(&lab);
-    figure_choose(job, "HSMC rolls grains within a reach drawn from 1 to 3 columns; the paper leaves "
-                  "the rule open");
+    figure_choose(job, "HSMC rolls grains within a reach drawn from 1 to 3 columns; the paper "
+                  "leaves the rule open");
     return done;
 }
 
@@ -135,8 +135,8 @@ bool heaps_hsmc_profile(struct figure_job *job, struct error *error)
         figure_hold(job, tail.rms < tail.rms_line && tail.tail > 3 * tail.tail_error,
                     "there is a tail, and eq. 8 has it");
         if (!job->quick) {
-            /* MODELS section 3: m = 0.54, l/r = 15 d, rms 4.8 d of a height of 270 d in x; by another
-             * program with another drop, hence a tenth of m and a third of the tail. */
+            /* An independent program has m = 0.54, l/r = 15 d, rms 4.8 d of 270 d, with another
+             * drop: hence a tenth of m and a third of the tail. */
             figure_near(job, "m", tail.slope, 0.54, 0.054);
             figure_near(job, "l/r [d]", tail.tail, 15, 5);
         }
@@ -167,16 +167,17 @@ bool heaps_lattice_profile(struct figure_job *job, struct error *error)
         draw_profile(&chart, &heap, &tail, foot);
         tell_tail(job, &tail);
         figure_hold(job, tail.rms < tail.rms_line, "eq. 8 is nearer than a straight line");
-        /* LGA-RULES: over seeds 58.5(4) degrees and l/r = 1.8(2) for 3000 grains; a single heap
-         * scatters by sqrt(3) of these errors, and the surface here is the rim of discs in bins of
-         * a node, another measure of the same: 2 degrees, 1.0.  Half as many grains: twice that. */
+        /* An independent program: over seeds 58.5(4) degrees and l/r = 1.8(2) for 3000 grains; a
+         * single heap scatters by sqrt(3) of these errors, and the surface here is the rim of discs
+         * in bins of a node, another measure of the same: 2 degrees, 1.0.  Half as many grains:
+         * twice that. */
         const double more = job->quick ? 2 : 1;
         figure_near(job, "angle of m", atan(tail.slope) * 180 / M_PI, 58.5, 2 * more);
         figure_near(job, "l/r", tail.tail, 1.8, 1 * more);
     }
     heap_free(&heap);
     lab_close(&lab);
-    figure_choose(job, "p = g = 0.5: the paper's numbers are in a lost figure; the angle is near 60 "
-                  "degrees, that of the lattice");
+    figure_choose(job, "p = g = 0.5: the paper's numbers are in a lost figure; the angle is near "
+                  "60 degrees, that of the lattice");
     return figure_chart(job, done, &chart, "", error);
 }

@@ -111,7 +111,10 @@ bool pipe_snapshots(struct figure_job *job, struct error *error)
 }
 
 /* All counts of the windows before the first arch, and of some with arches. */
-struct pools { uint32_t *early, *late; uint32_t early_count, late_count; const struct series *now; };
+struct pools {
+    uint32_t *early, *late, early_count, late_count;
+    const struct series *now;
+};
 
 static bool pool(void *context, uint32_t k, const uint32_t *counts, struct error *error)
 {
@@ -162,8 +165,8 @@ bool pipe_frequency(struct figure_job *job, struct error *error)
         done = draw_pool(job, pools.early, pools.early_count, false, error)
             && draw_pool(job, pools.late, pools.late_count, true, error);
     }
-    figure_choose(job, "all windows of 5 ms from 10 ms on to the first arch together, and all after it; the "
-                  "paper has B = 14 in the same unit");
+    figure_choose(job, "all windows of 5 ms from 10 ms on to the first arch together, and all "
+                  "after it; the paper has B = 14 in the same unit");
     free(memory);
     return done;
 }

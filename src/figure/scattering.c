@@ -77,7 +77,7 @@ bool scattering_mass(struct figure_job *job, struct error *error)
     }
     if (done) {
         const struct scatter_peak peak = scatter_peak(&s, job->quick ? 9 : 6);
-        /* The paper's 29 degrees, MODELS 28.5(15).  The maximum is broad and skew: a run of
+        /* The paper's 29 degrees; 28.5(15) elsewhere.  The maximum is broad and skew: a run of
          * 500 rows has it within 2.5.  In the quick form the grains are larger beside the obstacle,
          * the corona and the angle with them: at half the size it lies at 37 degrees. */
         figure_near(job, "maximum at [degrees]", peak.angle, 29,

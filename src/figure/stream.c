@@ -64,8 +64,8 @@ bool stream_density(struct figure_job *job, struct error *error)
         const double scale = job->quick ? (111 * 0.5 + 18) / (111 + 18.0) : 1;
         figure_near(job, "slope dF/d rho [dyn]", line.slope, 125e3 * scale,
                     doubt(job, 125e3 * scale, 1.5 * worst.error));
-        /* The paper's own fit has 0.011; forces known to 2 % (4 % in the quick form) at densities from
-         * 0.2 on leave the offset open by three times that. */
+        /* The paper's own fit has 0.011; forces known to 2 % (4 % in the quick form) at densities
+         * from 0.2 on leave the offset open by three times that. */
         figure_hold(job, fabs(line.offset) < (job->quick ? 0.15 : 0.08) * at_one,
                     "linear: F(0)/F(1) = %.3f of the fit", line.offset / at_one);
     }
@@ -113,7 +113,7 @@ bool stream_radius(struct figure_job *job, struct error *error)
                   0, job->quick ? 1 : 2.5, 2);
         figure_near(job, "F at R_ob = 1 cm [dyn]", at_one, 129e3, doubt(job, 129e3, noise[0]));
         /* The paper's line for the flat obstacle has no offset, though the round one's has;
-         * MODELS: 179e3 at 1 cm. */
+         * An independent program: 179(2)e3 at 1 cm. */
         figure_near(job, "slope dF/dR_ob [dyn/cm]", round.slope, 111e3,
                     doubt(job, 111e3, 2 * noise[0]));
         figure_near(job, "flat at 1 cm, corrected physics", flat_at_one, 179e3,
@@ -181,8 +181,8 @@ bool stream_speed(struct figure_job *job, struct error *error)
         chart_law(&chart, "v^1.5 below 700 cm/s", power,
                   (double[3]){700, last * pow(0.35, 2), 1.5}, 100, 700, 2);
         const struct stats_line all = exponent(small, 0, INFINITY), low = exponent(small, 0, 701);
-        /* MODELS section 5: 1.97 (1.93 to 2.02); a force wrong by 3 % at one end of 1.3 decades
-         * shifts it by 0.02, quick forms by twice that. */
+        /* An independent program: 1.97 (1.93 to 2.02); a force wrong by 3 % at one end of 1.3
+         * decades shifts it by 0.02, quick forms by twice that. */
         figure_near(job, "exponent of F(v), 100 to 2000 cm/s", all.slope, 1.97,
                     job->quick ? 0.09 : 0.05);
         if (fabs(low.slope - 1.5) > 0.1) {

@@ -40,7 +40,8 @@ struct heap_slope heap_slope(const struct heap *heap, double low, double high);
  *
  *     x = (h_m - h) / m + (l/r) ln(h_m / h)
  *
- * x from the middle of the heap; a straight flank of slope m, and a tail that thins out over l/r. */
+ * x from the middle of the heap; a straight flank of slope m, and a tail that thins out over
+ * l/r. */
 struct heap_tail {
     double slope, slope_error;  /* m */
     double tail, tail_error;    /* l/r */

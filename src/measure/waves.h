@@ -14,7 +14,7 @@ struct waves {
     uint32_t slabs, room, count;        /* across the pipe; looks there is room for, and taken */
     double   low, high;         /* the range of y that is looked at */
     double   interval;          /* between two looks */
-    double  *density;           /* grains in each slab, look by look: density[look * slabs + slab] */
+    double  *density;           /* grains in a slab: density[look * slabs + slab] */
 };
 
 bool waves_create(struct waves *waves, double low, double high, uint32_t slabs, uint32_t looks,

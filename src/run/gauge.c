@@ -52,8 +52,8 @@ bool gauge_draw(const struct gauge *gauge, struct gauge_job *job, struct chart *
     if (!gauge->draw(job, chart, error)) return false;
     uint32_t points = 0;
     for (uint32_t c = 0; c < chart->count; c++) points += chart->curves[c].count;
-    return points > 0 || error_set(error, "%s: there is nothing to plot of %s (no grains at rest, no "
-                                   "rows, or no frames)", job->run, gauge->name);
+    return points > 0 || error_set(error, "%s: there is nothing to plot of %s (no grains at rest, "
+                                   "no rows, or no frames)", job->run, gauge->name);
 }
 
 /* "time [s]"; the name alone in reduced units. */
@@ -165,9 +165,9 @@ static bool note_force(struct gauge_job *job, const struct table *log, int colum
     free(series);
     if (!done) return false;
     const size_t used = strlen(job->note);
-    snprintf(job->note + used, sizeof job->note - used, "%s%s = %.5g +- %.2g%s over the second half",
-             used ? "; " : "", log->names[column], mean.mean, mean.error,
-             mean.settled ? "" : " (too short to tell the error)");
+    snprintf(job->note + used, sizeof job->note - used,
+             "%s%s = %.5g +- %.2g%s over the second half", used ? "; " : "", log->names[column],
+             mean.mean, mean.error, mean.settled ? "" : " (too short to tell the error)");
     return true;
 }
 

@@ -94,7 +94,8 @@ static void write_curve(FILE *out, const struct chart *chart, uint32_t c, const 
 
 static void write_script(FILE *out, const struct chart *chart, const char *stem, unsigned formats)
 {
-    fprintf(out, "# Draws %s.csv: gnuplot %s.gp\nset datafile separator ','\nset title ", stem, stem);
+    fprintf(out, "# Draws %s.csv: gnuplot %s.gp\nset datafile separator ','\n", stem, stem);
+    fputs("set title ", out);
     quote(out, chart->title);
     fputs(" noenhanced\nset xlabel ", out);
     quote(out, chart->x_label);
