@@ -14,11 +14,12 @@
 #include <string.h>
 
 static bool write_frame(const struct dumps *dumps, uint32_t k, const struct scene *scene, bool csv,
-                        const char *directory, struct grains *grains, struct error *error)
+                        bool force, const char *directory, struct grains *grains, struct error *error)
 {
     char path[FILE_PATH_MAX];
     folder_path(path, directory, "grains_%06u.%s", dumps->index.entries[k].frame,
                 csv ? "csv" : "npy");
+    if (!force && !file_absent(path, error)) return false;
     if (!dumps_load(dumps, k, grains, error)) return false;
     return csv ? csv_save_grains(path, grains, scene, error) : dump_save(path, grains, error);
 }
@@ -48,9 +49,10 @@ static bool export_frames(const struct options *options, const struct dumps *dum
     }
     if (!file_make_directory(directory, error)) return false;
     struct grains grains = {0};
+    const bool force = options_given(options, OPTION_force);
     bool done = true;
     for (uint32_t k = first; done && k <= last; k++) {
-        done = write_frame(dumps, k, scene, csv, directory, &grains, error);
+        done = write_frame(dumps, k, scene, csv, force, directory, &grains, error);
     }
     grains_free(&grains);
     return done;

@@ -147,7 +147,8 @@ bool mapper_write(struct mapper *mapper, const char *directory, const char *suff
             char path[FILE_PATH_MAX];
             if (!(mapper->formats >> f & 1)) continue;
             folder_path(path, directory, "%s_%s.%s", field.name, suffix, format_names[f]);
-            done = write_one(mapper, &field, f, path, error);
+            done = !mapper->keeps || file_absent(path, error);
+            done = done && write_one(mapper, &field, f, path, error);
         }
         field_free(&field);
     }

@@ -235,7 +235,7 @@ void movie_abandon(struct movie *movie)
 {
     if (!movie) return;
     if (movie->process > 0) {
-        kill(movie->process, SIGTERM);
+        kill(movie->process, SIGKILL);          /* it may wait for something, and need not tidy */
         finish(movie);
     }
     unlink(movie->partial);
