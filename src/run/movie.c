@@ -9,6 +9,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,6 +41,7 @@ struct movie {
     int      pipe;              /* we write, ffmpeg reads */
     FILE    *complaints;        /* what ffmpeg says goes into this unnamed file */
     uint32_t width, height;
+    bool     torn;              /* a signal came while ffmpeg did not read: given up */
     uint8_t *flat;              /* a frame laid on white; made when first needed */
     char     path[FILE_PATH_MAX], partial[FILE_PATH_MAX + 16];
 };
@@ -175,14 +177,22 @@ static bool complain(struct movie *movie, struct error *error)
                      *words ? words : "it ended early; is the disk full?");
 }
 
-static bool send(int pipe, const uint8_t *bytes, size_t size)
+/* After a signal ffmpeg has so long to read on; it needs milliseconds unless it hangs. */
+enum { PATIENCE_MS = 3000 };
+
+/* A signal while ffmpeg hangs gives the film up, not the run: whoever asked for the end must not
+ * wait forever.  Only a signal lets write() to a pipe return before all is written. */
+static bool send(struct movie *movie, const uint8_t *bytes, size_t size)
 {
-    while (size > 0) {
-        const ssize_t sent = write(pipe, bytes, size);
-        if (sent < 0 && errno == EINTR) continue;
-        if (sent <= 0) return false;
-        bytes += sent;
-        size -= (size_t)sent;
+    while (size > 0 && !movie->torn) {
+        const ssize_t sent = write(movie->pipe, bytes, size);
+        if (sent < 0 && errno != EINTR) return false;
+        if (sent > 0) {
+            bytes += sent;
+            size -= (size_t)sent;
+        }
+        struct pollfd room = {.fd = movie->pipe, .events = POLLOUT};
+        if (size > 0) movie->torn = poll(&room, 1, PATIENCE_MS) == 0;
     }
     return true;
 }
@@ -213,13 +223,19 @@ bool movie_frame(struct movie *movie, const struct image *image, struct error *e
     assert(image->height == movie->height);
     const uint8_t *bytes = flatten(movie, image);
     if (!bytes) return error_set(error, "not enough memory for a frame of the movie");
-    if (send(movie->pipe, bytes, (size_t)4 * image->width * image->height)) return true;
+    if (send(movie, bytes, (size_t)4 * image->width * image->height)) return true;
     finish(movie);
     return complain(movie, error);
 }
 
 bool movie_commit(struct movie *movie, struct error *error)
 {
+    if (movie->torn) {
+        error_set(error, "%s: a signal came while ffmpeg did not read; no movie was made",
+                  movie->path);
+        movie_abandon(movie);
+        return false;
+    }
     bool done = movie->process > 0 && finish(movie);
     if (!done) complain(movie, error);
     if (done) file_sync(movie->partial);
