@@ -116,6 +116,11 @@ def files(run):
                   for where, _, names in os.walk(run) for name in names)
 
 
+def everything(run):
+    """The contents of every file, but for wall times."""
+    return {name: _contents(os.path.join(run, name)) for name in files(run)}
+
+
 def differences(one, other):
     """The files that only one run has, or whose contents differ in more than wall times."""
     mine, its = set(files(one)), set(files(other))

@@ -94,6 +94,9 @@ static bool is_number(const struct tree *node)
     return node->kind == TREE_INTEGER || node->kind == TREE_REAL;
 }
 
+/* Squares and products of larger numbers overflow, whatever the key. */
+static const double number_max = 1e30;
+
 /* One number, within the key's limits. */
 static bool take_number(struct parse *parse, const struct tree *node, const char *path,
                         const struct key *key, double *value)
@@ -120,6 +123,11 @@ static bool take_number(struct parse *parse, const struct tree *node, const char
     if ((!isnan(key->low) && number < key->low) || (!isnan(key->high) && number > key->high)) {
         tell(parse, node, "'%s' = %.10g is not allowed; it must be %s (%s)", path, number,
              key_limits(key, limits, sizeof limits), key->doc);
+        return false;
+    }
+    if (fabs(number) > number_max) {
+        tell(parse, node, "'%s' = %.10g is too large to compute with; at most %g (%s)", path, number,
+             number_max, key->doc);
         return false;
     }
     *value = number;
