@@ -261,10 +261,27 @@ static bool decode_all(struct decoder *decoder, struct image *image)
     return true;
 }
 
+/* Does every chunk end within the file?  libpng believes a chunk's length before it has read it, and
+ * takes up to 2 GB for it. */
+static bool chunks_fit(const uint8_t *bytes, size_t size)
+{
+    enum { SIGNATURE = 8, FRAME = 12 };         /* length, name and checksum of a chunk */
+    for (size_t at = SIGNATURE; at + FRAME <= size;) {
+        const uint8_t *b = bytes + at;
+        const size_t length = (size_t)b[0] << 24 | (size_t)b[1] << 16 | (size_t)b[2] << 8 | b[3];
+        if (length > size - at - FRAME) return false;
+        at += FRAME + length;
+    }
+    return true;
+}
+
 bool image_decode(struct image *image, const void *bytes, size_t size, struct error *error)
 {
     *image = (struct image){0};
     struct decoder decoder = {.bytes = bytes, .size = size};
+    if (!chunks_fit(bytes, size)) {
+        return error_set(error, "cannot read this as a PNG picture: a part of it is cut off");
+    }
     snprintf(decoder.reason, sizeof decoder.reason, "not enough memory");
     decoder.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, decoder.reason, remember_reason,
                                          ignore_warning);
