@@ -40,8 +40,8 @@ const struct command cli_commands[] = {
     {"frame", "SCENE|RUN", "draws one picture, from a run's dumps or simulated on the fly",
      "Without -t the end is drawn.  The file is NAME.png unless -o says another; one that is there\n"
      "already is overwritten only with --force.  --against REF.png compares: exit code 4, and\n"
-     "NAME-difference.png with the differing pixels in red, if any channel of any pixel differs by\n"
-     "more than --tolerance.\n",
+     "NAME-difference.png with the differing pixels in red, if any channel of any pixel differs\n"
+     "by more than --tolerance.\n",
      frame_options, 1, 1, cli_frame},
     {"movie", "SCENE|RUN...", "films a run, or a scene while it is simulated",
      "-o NAME.mp4, .webm or .gif; ffmpeg must be installed.  --side-by-side puts several models\n"

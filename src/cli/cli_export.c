@@ -14,7 +14,8 @@
 #include <string.h>
 
 static bool write_frame(const struct dumps *dumps, uint32_t k, const struct scene *scene, bool csv,
-                        bool force, const char *directory, struct grains *grains, struct error *error)
+                        bool force, const char *directory, struct grains *grains,
+                        struct error *error)
 {
     char path[FILE_PATH_MAX];
     folder_path(path, directory, "grains_%06u.%s", dumps->index.entries[k].frame,

@@ -34,7 +34,7 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(time_limit, "time-limit", 0, "S",     NULL, FORM_PLAIN,                                   \
       "stops after so much wall time (600, 90m, 12h), with a checkpoint and exit code 5")       \
     X(dry_run,   "dry-run",   0,   NULL,    NULL, FORM_PLAIN, "says what it would do, and ends") \
-    X(force,     "force",     'f', NULL,    NULL, FORM_PLAIN, "overwrites what is there already")      \
+    X(force,     "force",     'f', NULL,    NULL, FORM_PLAIN, "overwrites what is there")       \
     X(progress,  "progress",  0,   "HOW",   NULL, FORM_PLAIN, "auto, bar, plain or none")       \
     X(time,      "time",      't', "T",     NULL, FORM_PLAIN, "at which time; default: the end") \
     X(size,      "size",      0,   "WxH",   "view.size", FORM_SIZE, "of the picture in pixels") \

@@ -261,8 +261,8 @@ static bool decode_all(struct decoder *decoder, struct image *image)
     return true;
 }
 
-/* Does every chunk end within the file?  libpng believes a chunk's length before it has read it, and
- * takes up to 2 GB for it. */
+/* Does every chunk end within the file?  libpng believes a chunk's length before it has read it,
+ * and takes up to 2 GB for it. */
 static bool chunks_fit(const uint8_t *bytes, size_t size)
 {
     enum { SIGNATURE = 8, FRAME = 12 };         /* length, name and checksum of a chunk */

@@ -59,7 +59,8 @@ static struct vertex *new_shape(struct ink *ink)
     if (ink->count == ink->capacity) {
         const uint32_t capacity = ink->capacity ? ink->capacity * 2 : 1024;
         if (capacity > SHAPES_MAX) return NULL;
-        struct vertex *vertices = shortage_check(realloc(ink->vertices, capacity * 4 * sizeof *vertices));
+        const size_t size = capacity * 4 * sizeof *ink->vertices;
+        struct vertex *vertices = shortage_check(realloc(ink->vertices, size));
         if (!vertices) return NULL;
         ink->vertices = vertices;
         ink->capacity = capacity;

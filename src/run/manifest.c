@@ -20,7 +20,8 @@ static json_t *hash_word(uint64_t hash)
     return json_sprintf("%016" PRIx64, hash);
 }
 
-/* A name that is not UTF-8 (a file's may be any bytes) with a question mark for each strange byte. */
+/* A name that is not UTF-8 (a file's may be any bytes) gets a question mark for each strange
+ * byte. */
 static json_t *words(const char *text)
 {
     json_t *whole = json_string(text);
