@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/rng.h"
+#include "bench/bench_dsmc.h"
 #include "bench/bench_ed.h"
 #include "bench/bench_lga.h"
 #include "bench/bench_md.h"
@@ -109,6 +110,25 @@ static bool measure_nodes(const struct bench_case *which, struct bench_result *r
     if (!what->name) return error_set(error, "no lattice gas is called '%s'", which->scene);
     if (!bench_lga(what, &measured, error)) return false;
     *result = (struct bench_result){1e-9 * measured.updates, measured.cpu, measured.wall};
+    return true;
+}
+
+/* Direct simulation Monte Carlo (bench_dsmc.h); `scene` names one of its cases, `amount` is 1 for
+ * the rate of one thread, 2 for what a second one gains. */
+static bool measure_points(const struct bench_case *which, struct bench_result *result,
+                           struct error *error)
+{
+    const struct bench_dsmc_case *what = bench_dsmc_list;
+    struct bench_dsmc_result r[BENCH_DSMC_THREADS] = {0};
+    while (what->name && strcmp(what->name, which->scene) != 0) what++;
+    if (!what->name) return error_set(error, "no gas is called '%s'", which->scene);
+    const bool both = which->amount > 1;
+    if (!bench_dsmc(what, 5, both, r, error)) return false;
+    if (both && r[0].digest != r[1].digest) {
+        return error_set(error, "%s: two threads end in another state than one", which->name);
+    }
+    const double value = both ? r[1].per_wall / r[0].per_wall : 1e-6 * r[0].per_core;
+    *result = (struct bench_result){value, r[both].cpu, r[both].wall};
     return true;
 }
 
@@ -231,21 +251,6 @@ static const char gas_scene[] =
     "grains = ({ radius = 0.5; restitution = 0.9; });\n"
     "placements = ({ kind = \"random\"; count = 20000; temperature = 1.0; });\n";
 
-/* Ten points a cell, a mean free path of two cells, 0.27 of a cell a step at the mean speed. */
-#define DSMC_GAS(side, count)                                                                   \
-    "until = 1000.0; box = (0.0, 0.0, " side ", " side ");\n"                                   \
-    "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";\n"    \
-    "grains = ({ radius = 0.008839; restitution = 0.9; });\n"                                   \
-    "placements = ({ kind = \"square\"; spacing = 17.88; jitter = 1.0; count = " count "; "     \
-    "temperature = 1.0; });\n"                                                                  \
-    "dsmc = { method = \"plain\"; cell = 1.0; dt = 0.2154; };\n"
-
-static const char dense_scene[] =
-    "until = 1000.0; box = (0.0, 0.0, 560.0954, 560.0954);\n"
-    "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";\n"
-    "grains = ({ radius = 0.5; restitution = 0.9; });\n"
-    "placements = ({ kind = \"square\"; spacing = 1.77245; count = 99856; temperature = 1.0; });\n";
-
 const struct bench_case bench_list[] = {
     {"md-bed", "100,000 settled discs, tangential springs, one thread", "particle-steps/cpu-s",
      true, measure_bed, .amount = 1, .per_grain = true},
@@ -264,18 +269,18 @@ const struct bench_case bench_list[] = {
      measure_discs, .scene = "0.25", .set = "1", .amount = 10000},
     {"ed-dense-1e5", "99,856 hard discs, area fraction 0.70, elastic", "ns/collision", false,
      measure_discs, .scene = "0.70", .set = "1", .amount = 99856},
-    {"dsmc-gas-1e5", "99,856 points, ten a cell, mean free path two cells", "particle-steps/cpu-s",
-     true, measure_model, .scene = "dsmc-gas", .text = DSMC_GAS("100.0", "99856"),
-     .model = "dsmc", .amount = 43, .per_grain = true},
-    {"dsmc-gas-1e6", "a million of them", "particle-steps/cpu-s", true, measure_model,
-     .scene = "dsmc-gas", .text = DSMC_GAS("316.3", "1000000"), .model = "dsmc", .amount = 10.8,
-     .per_grain = true},
-    {"dsmc-dense", "99,856 discs, area fraction 0.25, dense form", "particle-steps/cpu-s", true,
-     measure_model, .scene = "dsmc-dense", .text = dense_scene, .model = "dsmc", .amount = 3,
-     .per_grain = true},
-    {"dsmc-hsmc", "the same with cells that can be full", "particle-steps/cpu-s", true,
-     measure_model, .scene = "dsmc-dense", .text = dense_scene, .set = "dsmc.method=hsmc",
-     .model = "dsmc", .amount = 3, .per_grain = true},
+    {"dsmc-1e5", "99,856 points, ten a cell, mean free path two cells, one thread",
+     "M particle-steps/cpu-s", true, measure_points, .scene = "1e5", .amount = 1},
+    {"dsmc-1e5-2", "the same on two threads, against one by turns", "times as fast", true,
+     measure_points, .scene = "1e5", .amount = 2},
+    {"dsmc-1e6", "a million of them, one thread", "M particle-steps/cpu-s", true, measure_points,
+     .scene = "1e6", .amount = 1},
+    {"dsmc-dense", "99,856 discs, area fraction 0.25, dense form, one thread",
+     "M particle-steps/cpu-s", true, measure_points, .scene = "dense", .amount = 1},
+    {"dsmc-hsmc", "the same with cells that can be full, one thread", "M particle-steps/cpu-s",
+     true, measure_points, .scene = "hsmc", .amount = 1},
+    {"dsmc-hsmc-2", "the same on two threads, against one by turns", "times as fast", true,
+     measure_points, .scene = "hsmc", .amount = 2},
     {"lga-hourglass", "the hourglass with 20,000 grains as a lattice gas", "ticks/cpu-s", true,
      measure_model, .scene = "hourglass", .set = "grains.[0].radius=[0.018, 0.027]",
      .model = "lga", .amount = 3},

@@ -21,7 +21,8 @@ const struct bench_lga_case bench_lga_list[] = {
     {"fhp2-lossy", "fhp2", "p = 0.9;", true, false, 2048, 400},
     {"fhp2-wide", "fhp2", "p = 0.9; g = 0.05;", true, true, 16384, 10},
     {"sandpile", "sandpile", "p = 0.5; g = 0.5; fly = false; strict = true;", true, true, 2048, 50},
-    {"gmlg", "gmlg", "k = 0.5; pw = 0.5; g = 0.5; orientation = \"H\";", true, true, 1024, 10},
+    {"gmlg", "gmlg", "k = 0.5; pw = 0.5; g = 0.5; orientation = \"H\";", true, true, 2048, 40},
+    {"gmlg-V", "gmlg", "k = 0.5; pw = 0.5; g = 0.5; orientation = \"V\";", true, true, 2048, 40},
     {0}
 };
 

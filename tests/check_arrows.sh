@@ -6,7 +6,7 @@
 #
 # SOURCE_DIR is the folder with base/, scene/, ...  `check_arrows.sh --self-test` plants each kind of
 # violation in a folder of its own and fails unless it is found.
-rooms="base scene model measure draw run bench live cli"
+rooms="base scene model measure draw run bench figure live cli"
 
 height() {
     level=0

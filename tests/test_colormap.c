@@ -63,6 +63,16 @@ static void test_values_find_their_place_on_each_scale(void **unused)
     CHECK_NEAR(colormap_position(SCALE_LOG, decades, 10), 1, 1e-15);
 }
 
+static void test_opposite_spins_lie_equally_far_from_the_middle_on_a_root_scale(void **state)
+{
+    (void)state;
+    const double range[2] = {-4, 4};
+    CHECK_NEAR(colormap_position(SCALE_SQRT, range, 0), 0.5, 1e-15);
+    CHECK_NEAR(colormap_position(SCALE_SQRT, range, 1), 0.75, 1e-15);       /* sqrt(1/4) up */
+    CHECK_NEAR(colormap_position(SCALE_SQRT, range, -1), 0.25, 1e-15);
+    CHECK_NEAR(colormap_position(SCALE_SQRT, range, -9), 0, 1e-15);
+}
+
 static void test_the_logarithm_starts_three_decades_below_the_top(void **unused)
 {
     (void)unused;
@@ -95,6 +105,8 @@ int main(void)
         cmocka_unit_test(test_lightness_rises_evenly_along_the_perceptual_maps),
         cmocka_unit_test(test_the_ends_of_the_maps_are_those_published),
         cmocka_unit_test(test_values_find_their_place_on_each_scale),
+        cmocka_unit_test(
+            test_opposite_spins_lie_equally_far_from_the_middle_on_a_root_scale),
         cmocka_unit_test(test_the_logarithm_starts_three_decades_below_the_top),
         cmocka_unit_test(test_what_is_outside_or_no_number_is_clamped),
     };

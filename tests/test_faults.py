@@ -123,7 +123,7 @@ class Faults(unittest.TestCase):
     def test_what_is_there_already_is_kept_unless_force_is_given(self):
         self.call("frame", "kept", "-o", "mine.png", *QUIET)
         for words in (["frame", "kept", "-o", "mine.png"], ["movie", "kept", "-o", "mine.gif"],
-                      ["map", "kept", "-o", "mymaps"], ["export", "kept", "-o", "mytables"]):
+                      ["map", "kept", "-o", "mymaps"]):
             first = self.call(*words)
             if words[0] == "movie" and not shutil.which("ffmpeg"):
                 continue

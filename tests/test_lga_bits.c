@@ -11,7 +11,7 @@
 #include <omp.h>
 
 /* What stands on the lattice. */
-enum ground { TORUS, BOX, PIPE, OBSTACLES, SINKS };
+enum ground { TORUS, BOX, PIPE, OBSTACLES, SINKS, CROWDED };
 
 struct trial {
     uint32_t columns, rows;
@@ -34,7 +34,7 @@ static void make_kinds(const struct trial *trial, uint8_t *kind)
             const bool end = y == 0 || y + 1 == trial->rows;
             uint8_t *k = &kind[y * trial->columns + x];
             *k = LGA_FLUID;
-            if (trial->ground == BOX || trial->ground == SINKS) *k = side || end ? LGA_WALL : *k;
+            if (trial->ground == BOX || trial->ground >= SINKS) *k = side || end ? LGA_WALL : *k;
             if (trial->ground == PIPE) *k = side ? LGA_WALL : *k;
             if (trial->ground == OBSTACLES) *k = noise(&state) % 5 == 0 ? LGA_WALL : *k;
             if (trial->ground == SINKS && y > 3 && y < 7 && x > 8 && x < 20) *k = LGA_SINK;
@@ -56,6 +56,7 @@ static struct lga *make(const struct trial *trial, bool plain, enum lga_simd sim
     CHECK(lga_step_allocate(lga));
     CHECK(plain == !lga->bits);
     if (simd < lga->simd) lga->simd = simd;
+    lga->crowded = trial->ground == CROWDED;    /* more grains on a node than gravity lets in */
     uint8_t *kind = calloc(lga->sites, 1);
     make_kinds(trial, kind);
     if (plain) memcpy(lga->kind, kind, lga->sites);
@@ -66,7 +67,12 @@ static struct lga *make(const struct trial *trial, bool plain, enum lga_simd sim
     uint64_t state = 99;
     for (uint32_t n = 0; n < lga->sites; n++) {
         unsigned moving = noise(&state) & noise(&state) & 0x3f;
-        const unsigned rest = (noise(&state) & 3) == 0;
+        unsigned rest = (noise(&state) & 3) == 0;
+        if (trial->rule.method == LGA_GMLG) {
+            if (noise(&state) & 1) moving |= (unsigned)noise(&state) & 0x3f;
+            const int most = lga->crowded ? 7 : 7 - __builtin_popcount(moving);
+            rest = (unsigned)(noise(&state) % (uint64_t)(most + 1));
+        }
         /* Grains of a sandpile need room to rest. */
         if (trial->rule.method == LGA_SANDPILE) moving &= (unsigned)noise(&state);
         if (kind[n] == LGA_FLUID) lga_node_set(lga, n, moving, rest);
@@ -98,6 +104,7 @@ static void check_equal(const struct lga *a, const struct lga *b)
     }
     CHECK(a->collisions == b->collisions);
     CHECK(a->grains_out == b->grains_out);
+    CHECK(a->refused == b->refused);
 }
 
 static const struct lga_rule elastic = {.method = LGA_FHP2, .gain = 1};
@@ -114,6 +121,16 @@ static const struct lga_rule pipe = {.method = LGA_SANDPILE, .gain = 1, .loss = 
 static const struct lga_rule pile = {.method = LGA_SANDPILE, .gain = 1, .loss = 1,
     .gravity = true, .fall = 0.5, .fly = true};
 
+static const struct lga_rule thin = {.method = LGA_GMLG, .gain = 1};
+static const struct lga_rule cooling = {.method = LGA_GMLG, .gain = 0.7, .inelastic = 0.6,
+                                        .wall_stop = 0.3};
+static const struct lga_rule level = {.method = LGA_GMLG, .gain = 1, .inelastic = 0.5,
+    .gravity = true, .fall = 0.5, .wall_stop = 0.5};
+static const struct lga_rule upright = {.method = LGA_GMLG, .gain = 0.9, .inelastic = 0.9,
+    .gravity = true, .vertical = true, .fall = 0.3, .friction = 0.4, .wall_stop = 0.9};
+static const struct lga_rule stiff = {.method = LGA_GMLG, .gain = 1, .inelastic = 1,
+    .gravity = true, .fall = 1, .friction = 0.7, .frozen = true, .wall_stop = 0};
+
 static void test_bits_and_bytes_make_the_same_lattice(void **unused)
 {
     (void)unused;
@@ -127,6 +144,12 @@ static void test_bits_and_bytes_make_the_same_lattice(void **unused)
         {120, 30, OBSTACLES, certain}, {100, 20, TORUS, cold}, {13, 60, PIPE, pipe},
         {600, 12, BOX, pile}, {512, 12, TORUS, pile}, {90, 40, SINKS, pile}, {90, 40, SINKS, cold},
         {90, 40, OBSTACLES, pile}, {700, 6, OBSTACLES, pipe},
+        {100, 20, TORUS, thin}, {512, 8, TORUS, cooling}, {2, 2, TORUS, cooling},
+        {513, 6, OBSTACLES, cooling}, {2, 2, TORUS, level}, {100, 4, TORUS, upright},
+        {65, 30, BOX, level}, {65, 30, BOX, upright}, {65, 30, BOX, stiff},
+        {512, 12, OBSTACLES, level}, {700, 12, OBSTACLES, upright}, {120, 16, OBSTACLES, stiff},
+        {90, 40, SINKS, level}, {90, 40, SINKS, upright}, {90, 40, SINKS, cooling},
+        {100, 20, CROWDED, level}, {100, 20, CROWDED, upright},
     };
     for (size_t k = 0; k < sizeof trials / sizeof *trials; k++) {
         struct lga *plain = make(&trials[k], true, LGA_SIMD_AVX512);
@@ -160,7 +183,7 @@ static void check_machines(const struct trial *trial)
             }
             check_equal(reference, lga);
             CHECK(memcmp(reference->bits->planes, lga->bits->planes,
-                         LGA_PLANES * sizeof(uint64_t) * 40 * lga->words) == 0);
+                         lga->bits->depth * sizeof(uint64_t) * 40 * lga->words) == 0);
             unmake(lga);
         }
     }
@@ -173,6 +196,9 @@ static void test_every_set_of_instructions_and_number_of_threads_gives_the_same_
     (void)unused;
     check_machines(&(struct trial){600, 40, OBSTACLES, all});
     check_machines(&(struct trial){600, 40, OBSTACLES, pile});
+    check_machines(&(struct trial){600, 40, OBSTACLES, level});
+    check_machines(&(struct trial){600, 40, SINKS, upright});
+    check_machines(&(struct trial){600, 40, TORUS, cooling});
 }
 
 static void check_held(const struct trial *trial)
@@ -201,6 +227,7 @@ static void test_a_grain_held_by_a_wall_waits(void **unused)
     (void)unused;
     check_held(&(struct trial){100, 10, OBSTACLES, lossy});
     check_held(&(struct trial){100, 10, OBSTACLES, pile});
+    check_held(&(struct trial){100, 10, OBSTACLES, upright});
 }
 
 static void test_dice_fall_as_often_as_they_should(void **unused)

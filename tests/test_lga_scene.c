@@ -150,6 +150,50 @@ static void test_grains_at_rest_are_packed_without_overlap(void **unused)
     scene_free(scene);
 }
 
+static void test_a_sample_holds_what_the_list_of_grains_holds(void **unused)
+{
+    (void)unused;
+    /* Cells of the size of the box: the sums over all grains, to rounding.  Then cells of five
+     * diameters: a grain is listed beside its node, at most one diameter away, to either side; half
+     * of that is allowed for the mean place of all. */
+    static const char *const methods[] = {"lga.method=\"gmlg\"", "lga.method=\"fhp2\"",
+                                          "lga.orientation=\"H\""};
+    for (uint32_t m = 0; m < 3; m++) {
+        struct scene *scene = load("until = 100.0; box = [-20.0, -20.0, 20.0, 20.0];"
+            "gravity = (0.0, -0.1); grains = ({ radius = 0.5; restitution = 0.5; });"
+            "placements = ({ region = [-15.0, -19.0, 18.0, 0.0]; spacing = 1.2; temperature = 1.0;"
+            "});", methods + m, 1);
+        struct simulation sim = start(scene);
+        simulation_advance(&sim, 5, UINT64_MAX, NULL);
+        const struct counters counters = simulation_count(&sim);
+        struct grains grains = look(&sim);
+        double mean[2] = {0}, sampled[2] = {0}, sum[SAMPLES] = {0};
+        struct field field;
+        CHECK(field_create(&field, -20, -20, 5, 8, 8, SAMPLES, NULL));
+        CHECK(sim.model->sample(sim.state, &field));
+        for (int k = 0; k < 64; k++) {
+            for (int c = 0; c < SAMPLES; c++) sum[c] += field.values[c * 64 + k];
+            sampled[0] += field.values[k] * (-17.5 + 5 * (k % 8)) / grains.count;
+            sampled[1] += field.values[k] * (-17.5 + 5 * (k / 8)) / grains.count;
+        }
+        for (uint32_t i = 0; i < grains.count; i++) {
+            mean[0] += (-17.5 + 5 * floor((grains.x[i] + 20) / 5)) / grains.count;
+            mean[1] += (-17.5 + 5 * floor((grains.y[i] + 20) / 5)) / grains.count;
+        }
+        CHECK_NEAR(sum[SAMPLE_COUNT], grains.count, 1e-9);
+        CHECK_NEAR(sum[SAMPLE_MASS], grains.count * M_PI / 4, 1e-9);
+        CHECK_NEAR(sum[SAMPLE_ENERGY], 2 * counters.kinetic_energy, 1e-9);
+        CHECK_NEAR(sum[SAMPLE_MOMENTUM_X], counters.momentum_x, 1e-9);
+        CHECK_NEAR(sum[SAMPLE_MOMENTUM_Y], counters.momentum_y, 1e-9);
+        CHECK(counters.kinetic_energy > 0);
+        for (int k = 0; k < 2; k++) CHECK_NEAR(sampled[k], mean[k], 0.5);
+        field_free(&field);
+        grains_free(&grains);
+        simulation_destroy(&sim);
+        scene_free(scene);
+    }
+}
+
 static uint32_t grains_below(const struct simulation *sim, double y)
 {
     struct grains grains = look(sim);
@@ -244,6 +288,7 @@ int main(void)
         cmocka_unit_test(test_a_grain_falls_straight_down_at_one_spacing_a_tick),
         cmocka_unit_test(test_a_default_fall_takes_as_long_as_free_fall),
         cmocka_unit_test(test_grains_at_rest_are_packed_without_overlap),
+        cmocka_unit_test(test_a_sample_holds_what_the_list_of_grains_holds),
         cmocka_unit_test(test_a_gate_holds_opens_and_closes_upon_grains),
         cmocka_unit_test(test_time_goes_on_where_a_phase_ticks_otherwise),
         cmocka_unit_test(test_what_the_lattice_cannot_show_is_told),

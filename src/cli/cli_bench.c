@@ -6,6 +6,7 @@
 #include "cli/opening.h"
 #include "base/file.h"
 #include "bench/bench.h"
+#include "bench/effects.h"
 #include "run/build.h"
 
 #include <jansson.h>
@@ -121,9 +122,45 @@ static bool write_json(const struct options *options, const json_t *root, struct
     return done;
 }
 
+/* A row of `bench --effects`; `context` is the list for --json, or NULL. */
+static void tell_effect(void *context, const struct effects_row *row)
+{
+    if (context) {
+        json_array_append_new(context, json_pack("{s:s, s:s, s:s, s:f, s:f, s:f}", "model",
+            row->model, "effect", row->name, "work", row->work, "seconds", row->seconds, "share",
+            row->share, "bytes_per_grain", row->bytes));
+        return;
+    }
+    printf("%-6s %-20s %12.4g us of %-8s %6.2f x none %10.0f bytes a grain\n", row->model,
+           row->name, 1e6 * row->seconds, row->work, row->share, row->bytes);
+    fflush(stdout);
+}
+
+static int bench_effects(const struct options *options)
+{
+    struct error error = {0};
+    if (opening_threads(options, &error) == 0) return opening_fail(&error);
+    json_t *list = options_given(options, OPTION_json) ? json_array() : NULL;
+    bool done = true;
+    for (const struct model *const *m = model_list; done && *m; m++) {
+        bool wanted = options->operand_count == 0;
+        for (uint32_t k = 0; k < options->operand_count; k++) {
+            wanted = wanted || strcmp(options->operands[k], (*m)->name) == 0;
+        }
+        if (wanted) done = effects_bench(*m, tell_effect, list, &error);
+    }
+    if (done && list) {
+        json_dumpf(list, stdout, JSON_INDENT(4) | JSON_REAL_PRECISION(9));
+        printf("\n");
+    }
+    json_decref(list);
+    return done ? EXIT_DONE : opening_fail(&error);
+}
+
 int cli_bench(const struct options *options)
 {
     struct error error = {0};
+    if (options_given(options, OPTION_effects)) return bench_effects(options);
     json_t *old = NULL;
     const uint32_t threads = opening_threads(options, &error);
     const char *output = options->values[OPTION_output];

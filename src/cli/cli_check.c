@@ -4,6 +4,7 @@
  */
 #include "cli/cli.h"
 #include "cli/opening.h"
+#include "bench/effects.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -69,7 +70,28 @@ static void tell_summary(const struct setup *setup)
                                                       sizeof text));
 }
 
-static void explain(const struct scene *scene)
+/* What it costs here: measured now, by going on without it from the same state. */
+static void tell_cost(const struct options *options, const struct model *model, effects_t effect)
+{
+    const struct setup_request request = {.path = options->operands[0],
+        .overrides = options->overrides, .override_count = options->override_count, .place = true};
+    struct effects_cost cost;
+    struct error error = {0};
+    char bytes[32];
+    if (!effects_measure(&request, effect, &cost, &error)) {
+        printf("  %-18s   cost: %s\n", "", error.text);
+    } else if (!cost.measured) {
+        printf("  %-18s   cost: not measured (%s)\n", "", cost.why);
+    } else {
+        printf("  %-18s   cost: %+.1f %% of the time of %s (%.3g us with, %.3g us without), "
+               "memory %s\n", "", 100 * (cost.with - cost.without) / cost.without, model->work,
+               1e6 * cost.with, 1e6 * cost.without,
+               opening_bytes(fmax(cost.bytes, 0), bytes, sizeof bytes));
+    }
+}
+
+static void explain(const struct options *options, const struct scene *scene,
+                    const struct model *model)
 {
     struct scene_reason reason;
     for (int on = 1; on >= 0; on--) {
@@ -78,6 +100,7 @@ static void explain(const struct scene *scene)
             if (reason.on != (on == 1)) continue;
             printf("  %-18s %s\n", effect_word(reason.effect), effect_doc(reason.effect));
             printf("  %-18s   %s\n", "", reason.why);
+            if (on) tell_cost(options, model, reason.effect);
         }
     }
 }
@@ -91,7 +114,7 @@ int cli_check(const struct options *options)
         return opening_fail(&error);
     }
     tell_summary(&setup);
-    if (options_given(options, OPTION_explain)) explain(setup.scene);
+    if (options_given(options, OPTION_explain)) explain(options, setup.scene, setup.model);
     setup_free(&setup);
     return EXIT_DONE;
 }

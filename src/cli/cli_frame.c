@@ -14,19 +14,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool save_picture(struct film *film, const struct footage *footage, const char *path,
-                         struct error *error)
-{
-    struct encoder_job job = {0};
-    struct image_note notes[ENCODER_NOTES];
-    film_describe(film, footage->grains.time, &job);
-    for (uint32_t k = 0; k < job.note_count; k++) {
-        notes[k] = (struct image_note){job.notes[k].key, job.notes[k].text};
-    }
-    return image_save(&film->image, path, film->scene->output.png_level, notes, job.note_count,
-                      error);
-}
-
 /* What --against asks for. */
 struct comparison {
     struct image reference;
@@ -104,7 +91,7 @@ static bool draw(const struct options *options, const struct setup *setup, const
         && film_open(&film, setup->scene, setup->model, &view, error)
         && footage_go(footage, t, error)
         && film_draw(&film, &footage->grains, footage->steps, footage->wall, error)
-        && save_picture(&film, footage, output, error)
+        && film_save(&film, footage->grains.time, output, error)
         && (!comparison.path || compare(&comparison, &film.image, output, error));
     film_close(&film);
     image_free(&comparison.reference);

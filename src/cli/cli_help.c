@@ -37,23 +37,12 @@ static void help_command(const struct command *command)
         const struct option_row *row = &options_table[*id];
         char left[64], letter[8] = "    ";
         if (row->letter) snprintf(letter, sizeof letter, "-%c, ", row->letter);
-        snprintf(left, sizeof left, "%s--%s%s%s", letter, row->name, row->value ? " " : "",
-                 row->value ? row->value : "");
+        const bool optional = row->form == FORM_OPTIONAL;
+        snprintf(left, sizeof left, "%s--%s%s%s%s", letter, row->name,
+                 optional ? "[=" : row->value ? " " : "", row->value ? row->value : "",
+                 optional ? "]" : "");
         printf("  %-26s %s\n", left, row->doc);
     }
-}
-
-/* Group number `index`: the scene's, then the models'. */
-static const struct key_group *group_at(uint32_t index)
-{
-    const struct key_group *group;
-    uint32_t own = 0;
-    while ((group = scene_key_group(own))) {
-        if (own++ == index) return group;
-    }
-    const struct key_group *settings[MODEL_MAX];
-    const uint32_t count = model_settings(settings);
-    return index - own < count ? settings[index - own] : NULL;
 }
 
 static void help_key(const struct key_group *group, const struct key *key, bool all)
@@ -85,7 +74,7 @@ static bool help_path(const char *word)
     snprintf(head, sizeof head, "%.*s", (int)strcspn(word, "."), word);
     bool found = false;
     const struct key_group *group;
-    for (uint32_t index = 0; (group = group_at(index)); index++) {
+    for (uint32_t index = 0; (group = opening_key_group(index)); index++) {
         const struct key *key = NULL;
         if (tail && strcmp(group->name, head) == 0) key = key_find(group, tail + 1);
         if (!tail && strcmp(group->name, word) == 0) {
@@ -107,7 +96,7 @@ static int unknown(const char *word)
     size_t count = 0;
     for (const struct command *c = cli_commands; c->name; c++) names[count++] = c->name;
     const struct key_group *group;
-    for (uint32_t index = 0; (group = group_at(index)); index++) {
+    for (uint32_t index = 0; (group = opening_key_group(index)); index++) {
         if (*group->name && count < 599) names[count++] = group->name;
         for (uint32_t k = 0; k < group->count && count < 599; k++) {
             names[count++] = group->keys[k].name;
@@ -135,7 +124,7 @@ int cli_help(const struct options *options)
     }
     if (strcmp(word, "keys") == 0) {
         const struct key_group *group;
-        for (uint32_t index = 0; (group = group_at(index)); index++) help_group(group);
+        for (uint32_t index = 0; (group = opening_key_group(index)); index++) help_group(group);
         return EXIT_DONE;
     }
     return help_path(word) ? EXIT_DONE : unknown(word);

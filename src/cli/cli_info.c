@@ -6,10 +6,10 @@
 #include "cli/opening.h"
 #include "run/dumps.h"
 #include "run/folder.h"
+#include "run/portrait.h"
 #include "run/recall.h"
 
 #include <jansson.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,47 +42,13 @@ static bool choose_grain(const struct options *options, const struct grains *gra
     if (options_given(options, OPTION_grain)) {
         uint64_t id;
         if (!options_whole(options, OPTION_grain, 0, &id, error)) return false;
-        for (*i = 0; *i < grains->count; ++*i) if (grains->id[*i] == id) return true;
+        if (portrait_find(grains, id, i)) return true;
         return error_set_code(error, EXIT_USAGE, "--grain %llu: no grain with this id at t = %.6g "
             "(it has left, or not yet entered)", (unsigned long long)id, grains->time);
     }
-    double at[2], least = INFINITY;
-    if (!options_pair(options, OPTION_at, ',', at, error)) return false;
-    for (uint32_t k = 0; k < grains->count; k++) {
-        const double distance = hypot(grains->x[k] - at[0], grains->y[k] - at[1]);
-        if (distance < least) {
-            least = distance;
-            *i = k;
-        }
-    }
-    return true;
-}
-
-/* The contacts of grain i, each with the force on i. */
-static json_t *contacts_of(const struct grains *grains, uint32_t i)
-{
-    json_t *list = json_array();
-    for (uint32_t k = 0; grains->contacts && k < grains->contact_count; k++) {
-        const struct contact *c = &grains->contacts[k];
-        if (c->i != i && c->j != i) continue;
-        const double sign = c->i == i ? 1 : -1;
-        json_t *with = c->j >= CONTACT_WALL ? json_sprintf("wall %u", c->j - CONTACT_WALL)
-                     : json_sprintf("grain %u", grains->id[c->i == i ? c->j : c->i]);
-        json_array_append_new(list, json_pack("{s:o, s:f, s:f, s:f, s:f, s:f}", "with", with,
-            "x", (double)c->x, "y", (double)c->y, "fx", sign * (double)c->fx,
-            "fy", sign * (double)c->fy, "overlap", (double)c->overlap));
-    }
-    return list;
-}
-
-static json_t *describe_grain(const struct grains *grains, uint32_t frame, uint32_t i)
-{
-    return json_pack("{s:i, s:f, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:i, s:f, s:o}",
-        "frame", (int)frame, "time", grains->time, "id", (json_int_t)grains->id[i],
-        "x", grains->x[i], "y", grains->y[i], "vx", grains->vx[i], "vy", grains->vy[i],
-        "angle", grains->angle[i], "spin", grains->spin[i], "radius", grains->radius[i],
-        "mass", grains->mass[i], "species", (int)grains->species[i],
-        "collision_rate", (double)grains->collision_rate[i], "contacts", contacts_of(grains, i));
+    double at[2];
+    return options_pair(options, OPTION_at, ',', at, error)
+        && portrait_nearest(grains, at[0], at[1], i);
 }
 
 /* One line a value, indented by depth; arrays of objects one line an entry. */
@@ -136,7 +102,8 @@ static bool info_grain(const struct options *options, const char *path, struct e
         && dumps_load(&dumps, entry, &grains, error)
         && choose_grain(options, &grains, &i, error);
     if (done) {
-        json_t *root = describe_grain(&grains, dumps.index.entries[entry].frame, i);
+        json_t *root = json_pack("{s:i}", "frame", (int)dumps.index.entries[entry].frame);
+        json_object_update_new(root, portrait_grain(&grains, i));
         if (!grains.contacts) json_object_set_new(root, "contacts",
             json_string("not kept; run again with -s output.contacts=true"));
         print(options, root);

@@ -53,6 +53,27 @@ static int tell_plan(const struct setup *setup, const char *directory)
     return EXIT_DONE;
 }
 
+/* Which effects the run had, which it left out, and where its time went. */
+static void tell_costs(const struct run_result *result, const struct scene *scene)
+{
+    char words[600];
+    const double wall = result->wall > 0 ? result->wall : 1;
+    effect_words(result->effects, words, sizeof words);
+    fprintf(stderr, "effects: %s\n", words);
+    effect_words((((effects_t)1 << EFFECT_COUNT) - 1) & ~result->effects, words, sizeof words);
+    fprintf(stderr, "left out: %s\ncost:", words);
+    for (int p = 0; p < PART_COUNT; p++) {
+        fprintf(stderr, " %s %.1f %%%s", parts_name((enum part)p), 100 * result->parts.wall[p] / wall,
+                p + 1 < PART_COUNT ? "," : ";");
+    }
+    if (result->per_time > 0) {
+        fprintf(stderr, " %.3g s for a time of 1 %s, %.3g us a step\n", result->per_time,
+                scene_unit(scene, "time"), 1e6 * result->per_step);
+    } else {
+        fprintf(stderr, " nothing was simulated\n");
+    }
+}
+
 static void tell_result(const struct run_result *result, const char *directory)
 {
     const struct counters *now = &result->counters;
@@ -84,7 +105,10 @@ static int simulate(const struct options *options, const struct setup *setup,
     const bool done = run_scene(&request, &result, &error);
     progress_end(&progress);
     if (!done) return opening_fail(&error);
-    if (progress.how != PROGRESS_NONE) tell_result(&result, directory);
+    if (progress.how != PROGRESS_NONE) {
+        tell_result(&result, directory);
+        tell_costs(&result, setup->scene);
+    }
     printf("%s\n", directory);
     return EXIT_DONE;
 }

@@ -21,13 +21,6 @@ static bool scene_name(const struct asset *asset, char *name, size_t size)
     return true;
 }
 
-static effects_t scene_effects(const struct scene *scene)
-{
-    effects_t all = 0;
-    for (uint32_t p = 0; p < scene->phase_count; p++) all |= scene->phases[p]->effects;
-    return all;
-}
-
 static json_t *describe(const char *name, const struct scene *scene)
 {
     json_t *able = json_array();

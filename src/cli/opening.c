@@ -148,6 +148,18 @@ void opening_warn(void *context, const char *text)
     fprintf(stderr, "sandreel: %s\n", text);
 }
 
+const struct key_group *opening_key_group(uint32_t index)
+{
+    const struct key_group *group;
+    uint32_t own = 0;
+    while ((group = scene_key_group(own))) {
+        if (own++ == index) return group;
+    }
+    const struct key_group *settings[MODEL_MAX];
+    const uint32_t count = model_settings(settings);
+    return index - own < count ? settings[index - own] : NULL;
+}
+
 char *opening_bytes(double bytes, char *text, size_t size)
 {
     static const char *const units[] = {"B", "kB", "MB", "GB", "TB"};

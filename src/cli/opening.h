@@ -34,6 +34,9 @@ int opening_fail(const struct error *error);
 void opening_report(void *context, const struct run_status *status);
 void opening_warn(void *context, const char *text);
 
+/* Key group number `index`: the scene's, then the models'; NULL past the last. */
+const struct key_group *opening_key_group(uint32_t index);
+
 /* "640000 bytes" for people. */
 char *opening_bytes(double bytes, char *text, size_t size);
 

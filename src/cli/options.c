@@ -105,6 +105,7 @@ static char *make_override(const struct option_row *row, const char *value)
     switch (row->form) {
     case FORM_PLAIN: fputs(value, out); break;
     case FORM_ON: fputs("true", out); break;
+    case FORM_OPTIONAL: break;
     case FORM_WORD: write_text(out, value, strlen(value)); break;
     case FORM_LIST: fprintf(out, "(%s)", value); break;
     case FORM_SIZE: {
@@ -145,6 +146,14 @@ static bool take(struct options *options, int id, const char *value, struct erro
         if (strchr(value, '=')) return add_override(options, value, error);
         return error_set_code(error, EXIT_USAGE, "-s %s: needs KEY=VALUE", value);
     }
+    if (id == OPTION_vary) {
+        if (options->vary_count == OPTIONS_VARIES_MAX) {
+            return error_set_code(error, EXIT_USAGE, "more than %d keys varied",
+                                  OPTIONS_VARIES_MAX);
+        }
+        options->varies[options->vary_count++] = value;
+        return true;
+    }
     /* Several models are the caller's to go through. */
     if (!row->key || (id == OPTION_model && strchr(value, ','))) return true;
     char *text = make_override(row, value);
@@ -174,6 +183,7 @@ static bool parse_option(struct options *options, char **arguments, int *at, int
         if (!value) return take(options, id, "", error);
         return error_set_code(error, EXIT_USAGE, "--%s takes no value", row->name);
     }
+    if (!value && row->form == FORM_OPTIONAL) return take(options, id, "", error);
     if (!value && *at + 1 < count) value = arguments[++*at];
     if (!value) {
         return error_set_code(error, EXIT_USAGE, "--%s needs a value: --%s %s", row->name,

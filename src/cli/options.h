@@ -15,7 +15,8 @@
 #include <stdint.h>
 
 /* How the value of an option that sets a key is written there. */
-enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM_ON };
+enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM_ON,
+                   FORM_OPTIONAL };     /* sets no key; --NAME or --NAME=VALUE */
 
 /* X(id, "long", letter or 0, "VALUE" or NULL, "scene key" or NULL, form, "what it does") */
 #define OPTIONS(X)                                                                              \
@@ -70,14 +71,35 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(average,   "average",   0,   "T1:T2", NULL, FORM_PLAIN,                                   \
       "mean over this time; default: a snapshot")                                               \
     X(as,        "as",        0,   "LIST",  NULL, FORM_PLAIN, "formats: png,npy,vti,csv")       \
-    X(to,        "to",        0,   "FORMAT", NULL, FORM_PLAIN, "csv, npy")                      \
+    X(plot_as,   "as",        0,   "LIST",  NULL, FORM_PLAIN, "formats: png,svg,pdf,text")      \
+    X(of,        "of",        0,   "WHAT",  NULL, FORM_PLAIN, "what to plot: energy, pair, ...") \
+    X(small,     "quick",     0,   NULL,    NULL, FORM_PLAIN,                                   \
+      "reduced numbers: each figure within a minute")                                           \
+    X(to,        "to",        0,   "LIST",  NULL, FORM_PLAIN,                                   \
+      "formats: csv,npy,vtp,vti,lammps,extxyz,h5md; default: csv")                              \
+    X(vary,      "vary",      0,   "KEY=VALUES", NULL, FORM_PLAIN,                              \
+      "values of a key: a:b:step, or v,w,... or a:b (drawn); may be given again")               \
+    X(random,    "random",    0,   "N",     NULL, FORM_PLAIN,                                   \
+      "draws the keys that have only a range, N times")                                         \
+    X(repeats,   "repeats",   0,   "N",     NULL, FORM_PLAIN,                                   \
+      "runs every point N times, with seeds of their own")                                      \
+    X(from,      "from",      0,   "T",     NULL, FORM_PLAIN,                                   \
+      "means of the log begin here; default: half the time")                                    \
+    X(shard,     "shard",     0,   "I/N",   NULL, FORM_PLAIN,                                   \
+      "only every N-th point, from the I-th on")                                                \
     X(explain,   "explain",   0,   NULL,    NULL, FORM_PLAIN,                                   \
       "which effects are on, and which off")                                                    \
+    X(effects,   "effects",   0,   NULL,    NULL, FORM_PLAIN,                                   \
+      "time and bytes per grain with each effect alone, all, none")                             \
     X(frame,     "frame",     0,   "N",     NULL, FORM_PLAIN,                                   \
       "number of a frame; default: the last")                                                   \
     X(grain,     "grain",     0,   "ID",    NULL, FORM_PLAIN, "tells about one grain")          \
     X(at,        "at",        0,   "X,Y",   NULL, FORM_PLAIN,                                   \
       "tells about the grain nearest to a point")                                               \
+    X(commands,  "commands",  0,   "FILE",  NULL, FORM_PLAIN,                                   \
+      "carries out the commands of a file")                                                     \
+    X(web,       "web",       0,   "PORT",  NULL, FORM_OPTIONAL,                                \
+      "in a browser: prints an address of this machine alone; any free port if none is given")  \
     X(json,      "json",      0,   NULL,    NULL, FORM_PLAIN, "prints one JSON document")       \
     X(against,   "against",   0,   "OLD.json", NULL, FORM_PLAIN,                                \
       "prints ratios to an earlier bench")                                                      \
@@ -104,7 +126,8 @@ struct option_row {
 
 extern const struct option_row options_table[OPTION_COUNT];
 
-enum { OPTIONS_OVERRIDES_MAX = 256, OPTIONS_OPERANDS_MAX = 64 };
+enum { OPTIONS_OVERRIDES_MAX = 256, OPTIONS_OPERANDS_MAX = 64,
+       OPTIONS_VARIES_MAX = 16 };
 
 struct options {
     const struct command *command;
@@ -113,6 +136,8 @@ struct options {
     uint32_t override_count;
     char *owned[OPTIONS_OVERRIDES_MAX];         /* the overrides that were put together here */
     uint32_t owned_count;
+    const char *varies[OPTIONS_VARIES_MAX];     /* each --vary */
+    uint32_t vary_count;
     const char *operands[OPTIONS_OPERANDS_MAX];
     uint32_t operand_count;
 };

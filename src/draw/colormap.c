@@ -72,9 +72,17 @@ const char *colormap_names(void)
 #undef X
 }
 
+static double signed_root(double x) { return copysign(sqrt(fabs(x)), x); }
+
 double colormap_position(enum scale scale, const double range[2], double value)
 {
     double low = range[0], high = range[1];
+    if (scale == SCALE_SQRT && low < 0 && high > 0) {   /* both ways from zero, as spins go */
+        low = signed_root(low);
+        high = signed_root(high);
+        value = signed_root(value);
+        scale = SCALE_LINEAR;
+    }
     if (scale == SCALE_LOG) {
         low = fmax(low, high / 1000);
         if (!(low > 0)) return value > high ? 1 : 0;    /* no positive values: no logarithm */

@@ -17,7 +17,8 @@ const uint8_t (*colormap_find(const char *name))[3];
 const char *colormap_names(void);
 
 /* Where a value lies in the range, 0..1, clamped; NAN gives 0.  The log scale starts at the larger
- * of range[0] and range[1] / 1000. */
+ * of range[0] and range[1] / 1000; the square root of a range on both sides of zero is taken of the
+ * size, both ways, so that opposite spins lie equally far from the middle. */
 double colormap_position(enum scale scale, const double range[2], double value);
 
 #endif

@@ -39,6 +39,16 @@ void image_free(struct image *image)
     image->rgba = NULL;
 }
 
+void image_place(struct image *whole, const struct image *part, uint32_t x0, uint32_t y0)
+{
+    assert(x0 + part->width <= whole->width);
+    assert(y0 + part->height <= whole->height);
+    for (uint32_t y = 0; y < part->height; y++) {
+        memcpy(whole->rgba + 4 * ((size_t)(y0 + y) * whole->width + x0),
+               part->rgba + 4 * (size_t)y * part->width, 4 * (size_t)part->width);
+    }
+}
+
 /* ---- encoding ---- */
 
 struct encoder {

@@ -20,6 +20,9 @@ enum { IMAGE_SIDE_MAX = 16384 };
 bool image_create(struct image *image, uint32_t width, uint32_t height, struct error *error);
 void image_free(struct image *image);
 
+/* Copies a picture into its place in a larger one; the part must fit. */
+void image_place(struct image *whole, const struct image *part, uint32_t x0, uint32_t y0);
+
 /* Encodes as PNG: RGB when every pixel is opaque, else RGBA; zlib `level` 0..9, of which 1 is the
  * fast one for films (image.c tells what was measured).
  * *bytes is malloc'ed, the caller frees.  Safe to call from several threads at once. */

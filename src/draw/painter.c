@@ -148,26 +148,43 @@ void painter_destroy(struct painter *painter)
 
 /* ---- what the frame shows, and where ---- */
 
-/* Fits the window, with square pixels and in the middle, into the part that the legend leaves. */
-static void frame_place(struct frame *frame, const struct painter *painter)
+void painter_window(const struct view *view, const struct scene *scene, double window[4])
 {
-    const struct picture *const picture = frame->picture;
-    const double *window = picture->view->window;
-    double boxed[4], layout[4];
-    if (isnan(window[0])) {
-        const double *const box = picture->scene->box;
-        const double margin = WINDOW_MARGIN * fmax(box[2] - box[0], box[3] - box[1]);
-        for (int k = 0; k < 4; k++) boxed[k] = box[k] + (k < 2 ? -margin : margin);
-        window = boxed;
+    const double *const box = scene->box;
+    const double margin = WINDOW_MARGIN * fmax(box[2] - box[0], box[3] - box[1]);
+    const bool open = isnan(view->window[0]);
+    for (int k = 0; k < 4; k++) {
+        window[k] = open ? box[k] + (k < 2 ? -margin : margin) : view->window[k];
     }
-    overlay_layout(picture, layout);
+}
+
+/* Fits the window, with square pixels and in the middle, into the part that the legend leaves. */
+static void place_window(const struct picture *picture, const double layout[4],
+                         struct transform *transform)
+{
+    double window[4];
+    painter_window(picture->view, picture->scene, window);
     const double scale = fmin((layout[2] - layout[0]) / (window[2] - window[0]),
                               (layout[3] - layout[1]) / (window[3] - window[1]));
-    frame->transform = (struct transform){
+    *transform = (struct transform){
         .scale = scale,
         .x0 = 0.5 * (window[0] + window[2]) - 0.5 * (layout[0] + layout[2]) / scale,
         .y1 = 0.5 * (window[1] + window[3]) + 0.5 * (layout[1] + layout[3]) / scale,
     };
+}
+
+void painter_place(const struct picture *picture, struct transform *transform)
+{
+    double layout[4];
+    overlay_layout(picture, layout);
+    place_window(picture, layout, transform);
+}
+
+static void frame_place(struct frame *frame, const struct painter *painter)
+{
+    double layout[4];
+    overlay_layout(frame->picture, layout);
+    place_window(frame->picture, layout, &frame->transform);
     const double width = painter->width, height = painter->height;
     frame->area = (struct splat_area){
         .x0 = (uint32_t)fmax(0, floor(layout[0])),

@@ -8,6 +8,7 @@
 #define PAINTER_H
 
 #include "draw/image.h"
+#include "draw/transform.h"
 #include "model/field.h"
 #include "model/grains.h"
 #include "scene/scene.h"
@@ -42,6 +43,12 @@ void painter_destroy(struct painter *painter);
 /* Draws one frame into `image`, which must have the painter's size. */
 bool painter_frame(struct painter *painter, const struct picture *picture, struct image *image,
                    struct error *error);
+
+/* The part of the scene that a view asks for: its window, or the box with a margin. */
+void painter_window(const struct view *view, const struct scene *scene, double window[4]);
+
+/* Where the picture shows the scene: how its points become pixels. */
+void painter_place(const struct picture *picture, struct transform *transform);
 
 /* What a grain is coloured by (view->color) as one number, and what to call it.  Spin has a sign;
  * pressure is the sum of the sizes of its contact forces over its perimeter, and needs contacts:

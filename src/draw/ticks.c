@@ -173,7 +173,7 @@ static void linear_ticks(struct ticks *ticks, const struct request *request, uin
 }
 
 /* Half of the wanted ticks at equal steps; then the low end, which the root stretches, is filled
- * with ever finer ones. */
+ * with ever finer ones.  A range on both sides of zero is stretched in the middle: equal steps. */
 static void sqrt_ticks(struct ticks *ticks, const struct request *request, uint32_t wanted)
 {
     const double gap = 0.8 / wanted, low = request->range[0];
@@ -182,7 +182,7 @@ static void sqrt_ticks(struct ticks *ticks, const struct request *request, uint3
     int64_t first, last;
     multiples(s, low, request->range[1], &first, &last);
     for (int64_t k = last; k >= first; k--) insert(ticks, request, k * s.mantissa, s.exponent, gap);
-    for (int finer = 0; finer < 7; finer++) {
+    for (int finer = 0; finer < 7 && low >= 0; finer++) {
         const int64_t end = decimal(first * s.mantissa, s.exponent) > low ? first : first + 1;
         const double below = (double)end * step_value(s);
         s = step_finer(s);

@@ -22,6 +22,14 @@ void csv_number(FILE *stream, double value)
     fputs(text, stream);
 }
 
+void csv_numbers(FILE *stream, char mark, const double *values, size_t count)
+{
+    for (size_t k = 0; k < count; k++) {
+        fputc(mark, stream);
+        csv_number(stream, values[k]);
+    }
+}
+
 /* A unit for the units line; pure numbers say 1. */
 static const char *unit_or_one(const char *unit) { return *unit ? unit : "1"; }
 
@@ -72,10 +80,7 @@ bool csv_save_grains(const char *path, const struct grains *grains, const struct
         const double numbers[] = {grains->x[k], grains->y[k], grains->vx[k], grains->vy[k],
                                   grains->spin[k], grains->radius[k]};
         fprintf(file.stream, "%" PRIu32, grains->id[k]);
-        for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++) {
-            fputc(',', file.stream);
-            csv_number(file.stream, numbers[n]);
-        }
+        csv_numbers(file.stream, ',', numbers, sizeof numbers / sizeof *numbers);
         fprintf(file.stream, ",%.9g,%u\n", (double)grains->collision_rate[k],
                 (unsigned)grains->species[k]);
     }
@@ -108,12 +113,10 @@ bool csv_save_scatter(const char *path, const struct scatter *scatter, const str
         return false;
     }
     for (uint32_t k = 0; k < scatter->bins; k++) {
-        const double numbers[] = {scatter->angle[k], scatter->count[k], scatter->mass[k],
-                                  scatter->mass_error[k], scatter->momentum[k], scatter->spin[k]};
-        for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++) {
-            if (n > 0) fputc(',', file.stream);
-            csv_number(file.stream, numbers[n]);
-        }
+        const double numbers[] = {scatter->count[k], scatter->mass[k], scatter->mass_error[k],
+                                  scatter->momentum[k], scatter->spin[k]};
+        csv_number(file.stream, scatter->angle[k]);
+        csv_numbers(file.stream, ',', numbers, sizeof numbers / sizeof *numbers);
         fputc('\n', file.stream);
     }
     return file_commit(&file, error);

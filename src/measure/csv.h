@@ -11,6 +11,7 @@
 #include "scene/scene.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 
 /* x,y of each cell's centre and its value(s): "x,y,density" or "x,y,velocity_x,velocity_y";
@@ -29,5 +30,8 @@ bool csv_save_scatter(const char *path, const struct scatter *scatter, const str
 
 /* The shortest digits that read back to the same value; "nan" and "inf" as such. */
 void csv_number(FILE *stream, double value);
+
+/* Several, each with `mark` before it. */
+void csv_numbers(FILE *stream, char mark, const double *values, size_t count);
 
 #endif

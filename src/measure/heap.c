@@ -78,3 +78,73 @@ struct heap_slope heap_slope(const struct heap *heap, double low, double high)
     slope.angle_error = slope.slope_error / (1 + slope.slope * slope.slope) * 180 / M_PI;
     return slope;
 }
+
+/* Where the lines through both flanks meet; the top if one of them is not there. */
+static double middle_of(const struct heap *heap)
+{
+    uint32_t top = 0;
+    for (uint32_t b = 1; b < heap->bins; b++) if (heap->height[b] > heap->height[top]) top = b;
+    const double full = heap->height[top];
+    const struct stats_line left = flank(heap, top, -1, 0.15 * full, 0.85 * full);
+    const struct stats_line right = flank(heap, top, 1, 0.15 * full, 0.85 * full);
+    const double x = (right.offset - left.offset) / (left.slope - right.slope);
+    return isfinite(x) ? x : heap->x0 + (top + 0.5) * heap->width;
+}
+
+/* c = h/m + (l/r) ln h grows with h: the h_m that gives the c of the fit. */
+static double solve_height(const struct stats_plane *fit, double guess)
+{
+    double h = guess;
+    for (int k = 0; k < 60; k++) {
+        const double f = -fit->p[1] * h - fit->p[2] * log(h) - fit->p[0];
+        const double next = h - f / (-fit->p[1] - fit->p[2] / h);
+        if (!(next > 0)) return NAN;
+        if (fabs(next - h) < 1e-12 * h) return next;
+        h = next;
+    }
+    return NAN;
+}
+
+/* x = c - h/m - (l/r) ln h is linear in c, 1/m and l/r, so there is nothing to guess. */
+bool heap_tail(const struct heap *heap, double foot, double high, struct heap_tail *tail,
+               struct error *error)
+{
+    *tail = (struct heap_tail){NAN, NAN, NAN, NAN, NAN, NAN, middle_of(heap), NAN, NAN, 0};
+    double *x = malloc(3 * (size_t)heap->bins * sizeof *x), full = 0;
+    if (!x) return error_set(error, "not enough memory to fit a heap of %u bins", heap->bins);
+    double *h = x + heap->bins, *logs = h + heap->bins;
+    for (uint32_t b = 0; b < heap->bins; b++) full = fmax(full, heap->height[b]);
+    for (uint32_t b = 0; b < heap->bins; b++) {
+        if (!(heap->height[b] >= foot) || heap->height[b] > high * full) continue;
+        h[tail->points] = heap->height[b];
+        logs[tail->points] = log(heap->height[b]);
+        x[tail->points++] = fabs(heap->x0 + (b + 0.5) * heap->width - tail->middle);
+    }
+    const struct stats_plane fit = stats_plane(h, logs, x, tail->points);
+    const struct stats_line line = stats_line(h, x, tail->points);
+    double rest = 0;
+    for (uint32_t k = 0; k < tail->points; k++) {
+        rest += pow(x[k] - line.offset - line.slope * h[k], 2);
+    }
+    free(x);
+    const double hm = solve_height(&fit, full), m = -1 / fit.p[1];
+    tail->slope = m;
+    tail->slope_error = m * m * sqrt(fit.covariance[1][1]);
+    tail->tail = -fit.p[2];
+    tail->tail_error = sqrt(fit.covariance[2][2]);
+    tail->height = hm;
+    const double gradient[3] = {1, hm, log(hm)};
+    double spread2 = 0;
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++) spread2 += gradient[r] * fit.covariance[r][c] * gradient[c];
+    }
+    tail->height_error = sqrt(fmax(0, spread2)) / fabs(1 / m + tail->tail / hm);
+    tail->rms = fit.rms;
+    tail->rms_line = sqrt(rest / tail->points);
+    return true;
+}
+
+double heap_tail_x(const struct heap_tail *tail, double h)
+{
+    return (tail->height - h) / tail->slope + tail->tail * log(tail->height / h);
+}

@@ -36,4 +36,29 @@ struct heap_slope {
  * share grains, so take bins of a diameter or more. */
 struct heap_slope heap_slope(const struct heap *heap, double low, double high);
 
+/* The shape of a heap with its tail, simplified (8):
+ *
+ *     x = (h_m - h) / m + (l/r) ln(h_m / h)
+ *
+ * x from the middle of the heap; a straight flank of slope m, and a tail that thins out over l/r. */
+struct heap_tail {
+    double slope, slope_error;  /* m */
+    double tail, tail_error;    /* l/r */
+    double height, height_error;        /* h_m */
+    double middle;              /* x of it */
+    double rms;                 /* of x about the curve */
+    double rms_line;            /* about the best straight line, for comparison */
+    uint32_t points;
+};
+
+/* Both flanks together, from `foot` (a height; a diameter leaves single grains out) to the share
+ * `high` of the top (0.95 leaves the crater of the source out).  Errors are those of the fit, the
+ * height's included; neighbouring bins share grains, so take bins of a diameter or more.  NANs if
+ * there are fewer than four points. */
+bool heap_tail(const struct heap *heap, double foot, double high, struct heap_tail *tail,
+               struct error *error);
+
+/* x of eq. 8 at a height. */
+double heap_tail_x(const struct heap_tail *tail, double h);
+
 #endif

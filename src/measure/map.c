@@ -18,7 +18,6 @@
 enum { PART_MAX = 8 };
 
 static const double parts_bytes_max = 64e6;     /* more memory than this is not worth a thread */
-static const double cells_max = 16777216;       /* 4096 x 4096: 2.1 GB of sums */
 static const double width_max = 64;             /* cells; wider kernels cost 1e5 cells a grain */
 static const uint32_t worth_threads = 20000;    /* grains */
 
@@ -74,29 +73,18 @@ static bool find_gather(const struct measure *measure, const char *path, unsigne
     return true;
 }
 
-/* Number of cells along a side; the last may stick out and is then cut short. */
-static double side_cells(double length, double cell) { return ceil(length / cell - 1e-9); }
-
-/* Cells of the wanted size; along a periodic side the size is changed a little so that a whole
- * number of them fits (x first: with two periodic sides the last row may be cut short). */
 static bool grid_set(struct map_grid *grid, const struct scene *scene,
                      const struct measure *measure, struct error *error)
 {
     const double *box = scene->box, lx = box[2] - box[0], ly = box[3] - box[1];
-    assert(lx > 0);
-    assert(ly > 0);
-    double cell = measure->cell;
-    if (isnan(cell)) cell = 4 * scene->radius_mean;     /* two mean diameters */
-    if (!(cell > 0)) cell = fmax(lx, ly) / 64;
-    cell = fmin(cell, fmin(lx, ly));
     const bool periodic_x = scene->left == BORDER_PERIODIC;
     const bool periodic_y = scene->bottom == BORDER_PERIODIC;
-    if (periodic_x) cell = lx / fmax(1, round(lx / cell));
-    else if (periodic_y) cell = ly / fmax(1, round(ly / cell));
-    const double nx = side_cells(lx, cell), ny = side_cells(ly, cell);
-    if (nx * ny > cells_max) {
+    double nx, ny;
+    const double cell = field_cells(scene, measure, &nx, &ny);
+    if (nx * ny > FIELD_CELLS_MAX) {
         return error_set_code(error, EXIT_SCENE, "%s: a map of %.0f x %.0f cells is too large; "
-            "make measure.cell at least %.3g", scene->path, nx, ny, sqrt(lx * ly / cells_max));
+            "make measure.cell at least %.3g", scene->path, nx, ny,
+            sqrt(lx * ly / FIELD_CELLS_MAX));
     }
     const double width = isnan(measure->width) ? 1 : measure->width / cell;
     if (measure->kernel != KERNEL_BOX && !(width > 0 && width <= width_max)) {
@@ -176,6 +164,10 @@ void map_add(struct map *map, const struct grains *grains)
 {
     if (map->snapshots++ == 0) map->from = grains->time;
     map->to = grains->time;
+    if (grains->sample.values) {
+        map_kernel_add_sample(&map->grid, map->parts[0].cells, &grains->sample);
+        return;
+    }
     unsigned gather = map->gather;              /* what the picture does not show adds nothing */
     if (!grains->radius) gather &= ~(unsigned)(MAP_GATHER_AREA | MAP_GATHER_SPIN);
     if (!grains->spin) gather &= ~(unsigned)MAP_GATHER_SPIN;

@@ -287,3 +287,41 @@ void map_kernel_add(const struct map_grid *grid, struct map_part *part,
 #undef CASE
     }
 }
+
+/* The share of cell k of the sample's axis that lies in cell i of the grid's. */
+static double shared(double from, double size, uint32_t i)
+{
+    return fmax(0, fmin(from + size, i + 1.0) - fmax(from, (double)i)) / size;
+}
+
+static void add_sampled(const struct map_grid *grid, struct map_cell *cells,
+                        const struct field *sample, uint32_t kx, uint32_t ky)
+{
+    const size_t all = (size_t)sample->nx * sample->ny, k = (size_t)ky * sample->nx + kx;
+    const double *v = sample->values + k, count = v[SAMPLE_COUNT * all];
+    if (!(count > 0)) return;
+    const double size = sample->cell / grid->cell, mass = v[SAMPLE_MASS * all];
+    const double x = (sample->x0 - grid->x0) / grid->cell + kx * size;
+    const double y = (sample->y0 - grid->y0) / grid->cell + ky * size;
+    const struct grain mean = {.mass = mass / count, .vx = v[SAMPLE_MOMENTUM_X * all] / mass,
+                               .vy = v[SAMPLE_MOMENTUM_Y * all] / mass};
+    const double own = v[SAMPLE_ENERGY * all] - mass * (mean.vx * mean.vx + mean.vy * mean.vy);
+    for (uint32_t j = (uint32_t)fmax(0, y); j < grid->ny && j < y + size; j++) {
+        for (uint32_t i = (uint32_t)fmax(0, x); i < grid->nx && i < x + size; i++) {
+            const double share = shared(x, size, i) * shared(y, size, j);
+            struct map_cell *cell = &cells[(size_t)j * grid->nx + i];
+            if (!(share > 0)) continue;
+            deposit(cell, &mean, share * count, 0);
+            cell->energy += share * fmax(0, own);
+            cell->area += share * v[SAMPLE_AREA * all];
+        }
+    }
+}
+
+void map_kernel_add_sample(const struct map_grid *grid, struct map_cell *cells,
+                           const struct field *sample)
+{
+    for (uint32_t ky = 0; ky < sample->ny; ky++) {
+        for (uint32_t kx = 0; kx < sample->nx; kx++) add_sampled(grid, cells, sample, kx, ky);
+    }
+}

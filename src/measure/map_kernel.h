@@ -67,4 +67,9 @@ double map_kernel_share(const struct map_grid *grid, uint32_t ix, uint32_t iy);
 void map_kernel_add(const struct map_grid *grid, struct map_part *part,
                     const struct grains *grains, uint32_t from, uint32_t to, unsigned gather);
 
+
+/* Shares a sample (enum field_sample) out among the cells that its cells cover. */
+void map_kernel_add_sample(const struct map_grid *grid, struct map_cell *cells,
+                           const struct field *sample);
+
 #endif

@@ -95,6 +95,48 @@ static bool invert(double m[3][3], double inverse[3][3])
     return true;
 }
 
+/* About the means of u and v and in units of their spread, so that the normal equations are well
+ * conditioned; then back. */
+struct stats_plane stats_plane(const double *u, const double *v, const double *y, size_t count)
+{
+    struct stats_plane fit = {.p = {NAN, NAN, NAN}, .rms = NAN, .count = count};
+    for (int r = 0; r < 3; r++) for (int c = 0; c < 3; c++) fit.covariance[r][c] = NAN;
+    if (count < 4) return fit;
+    const double um = average(u, count), vm = average(v, count);
+    const double us = sqrt(variance(u, count, um)), vs = sqrt(variance(v, count, vm));
+    double m[3][3] = {{0}}, right[3] = {0}, cov[3][3], p[3] = {0}, rest = 0;
+    if (!(us > 0) || !(vs > 0)) return fit;
+    for (size_t k = 0; k < count; k++) {
+        const double terms[3] = {1, (u[k] - um) / us, (v[k] - vm) / vs};
+        for (int r = 0; r < 3; r++) {
+            right[r] += terms[r] * y[k];
+            for (int c = 0; c < 3; c++) m[r][c] += terms[r] * terms[c];
+        }
+    }
+    if (!invert(m, cov)) return fit;
+    for (int r = 0; r < 3; r++) for (int c = 0; c < 3; c++) p[r] += cov[r][c] * right[c];
+    const double back[3][3] = {{1, -um / us, -vm / vs}, {0, 1 / us, 0}, {0, 0, 1 / vs}};
+    for (int r = 0; r < 3; r++) {
+        fit.p[r] = 0;
+        for (int c = 0; c < 3; c++) fit.p[r] += back[r][c] * p[c];
+    }
+    for (size_t k = 0; k < count; k++) {
+        const double d = y[k] - fit.p[0] - fit.p[1] * u[k] - fit.p[2] * v[k];
+        rest += d * d;
+    }
+    fit.rms = sqrt(rest / (double)count);
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++) {
+            double sum = 0;
+            for (int a = 0; a < 3; a++) {
+                for (int b = 0; b < 3; b++) sum += back[r][a] * cov[a][b] * back[c][b];
+            }
+            fit.covariance[r][c] = sum * rest / (double)(count - 3);
+        }
+    }
+    return fit;
+}
+
 /* Standard deviation of gradient . parameters, given their covariance. */
 static double spread(double covariance[3][3], const double gradient[static 3])
 {

@@ -31,6 +31,16 @@ struct stats_line {
 /* Least squares; NANs where undetermined (fewer than two different x; errors: than three). */
 struct stats_line stats_line(const double *x, const double *y, size_t count);
 
+struct stats_plane {
+    double p[3];                /* y = p[0] + p[1] u + p[2] v */
+    double covariance[3][3];    /* from the scatter about the plane */
+    double rms;                 /* of the deviations */
+    size_t count;
+};
+
+/* Least squares; NANs where undetermined (u, v and 1 not independent, fewer than four points). */
+struct stats_plane stats_plane(const double *u, const double *v, const double *y, size_t count);
+
 struct stats_parabola {
     double offset, slope, curvature;    /* y = offset + slope u + curvature u^2, u = x - middle */
     double middle;

@@ -7,61 +7,29 @@
 #include "measure/vti.h"
 
 #include "base/file.h"
+#include "measure/base64.h"
 
 #include <assert.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
-
-/* Bytes on their way into base64: three make four letters, so up to two wait. */
-struct letters {
-    FILE *stream;
-    unsigned char waiting[3];
-    int count;
-};
-
-static void letters_flush(struct letters *letters)
-{
-    static const char alphabet[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const unsigned char *b = letters->waiting;
-    char text[4];
-    if (letters->count == 0) return;
-    memset(letters->waiting + letters->count, 0, (size_t)(3 - letters->count));
-    text[0] = alphabet[b[0] >> 2];
-    text[1] = alphabet[(b[0] & 3) << 4 | b[1] >> 4];
-    text[2] = letters->count > 1 ? alphabet[(b[1] & 15) << 2 | b[2] >> 6] : '=';
-    text[3] = letters->count > 2 ? alphabet[b[2] & 63] : '=';
-    fwrite(text, 1, sizeof text, letters->stream);
-    letters->count = 0;
-}
-
-static void letters_add(struct letters *letters, const void *bytes, size_t size)
-{
-    const unsigned char *from = bytes;
-    for (size_t k = 0; k < size; k++) {
-        letters->waiting[letters->count++] = from[k];
-        if (letters->count == 3) letters_flush(letters);
-    }
-}
 
 static void write_field(FILE *stream, const struct field *field)
 {
     const size_t cells = (size_t)field->nx * field->ny;
     const uint32_t components = field->components == 1 ? 1 : 3;
     const uint64_t size = cells * components * sizeof(double);
-    struct letters letters = {.stream = stream};
+    struct base64 letters = {.stream = stream};
     assert(field->components <= 3);
     fprintf(stream, "        <DataArray type=\"Float64\" Name=\"%s\" NumberOfComponents=\"%" PRIu32
             "\" format=\"binary\">\n", field->name, components);
-    letters_add(&letters, &size, sizeof size);
+    base64_add(&letters, &size, sizeof size);
     for (size_t k = 0; k < cells; k++) {
         for (uint32_t c = 0; c < components; c++) {
             const double value = c < field->components ? field->values[c * cells + k] : 0;
-            letters_add(&letters, &value, sizeof value);
+            base64_add(&letters, &value, sizeof value);
         }
     }
-    letters_flush(&letters);
+    base64_flush(&letters);
     fprintf(stream, "\n        </DataArray>\n");
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/arena.h"
 #include "base/error.h"
+#include "model/field.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -34,8 +35,13 @@ struct grains {
     double   *angle, *spin;     /* counter-clockwise; zero where the model has no rotation */
     double   *radius, *mass;
     float    *collision_rate;   /* contacts begun per time, over the last whole window */
+    uint32_t *collisions;       /* contacts begun since the start, with grains and walls ... */
+    uint32_t *collisions_elastic;       /* ... and those that the TC rule kept elastic; both stay
+                                 * zero without EFFECT_COLLISION_COUNT */
     uint16_t *species;
     struct contact *contacts;   /* NULL: not wanted */
+    struct field sample;        /* instead of a list, where there are too many grains: sums on a
+                                 * grid (enum field_sample); values NULL: the list is whole */
     struct arena arena;         /* owns the arrays if grains_create made them */
 };
 
@@ -43,5 +49,9 @@ struct grains {
 bool grains_create(struct grains *grains, uint32_t capacity, uint32_t contact_capacity,
                    struct error *error);
 void grains_free(struct grains *grains);
+
+/* Brings the grains into the order of their ids, as readers expect who follow a grain by its row;
+ * models keep them in any order.  The contacts, which name rows, are dropped. */
+bool grains_sort(struct grains *grains, struct error *error);
 
 #endif

@@ -12,6 +12,7 @@
 #include "model/counters.h"
 #include "model/field.h"
 #include "model/grains.h"
+#include "model/impulse.h"
 #include "model/tally.h"
 #include "scene/scene.h"
 
@@ -57,6 +58,10 @@ struct model {
     /* Fills a picture of the present; never changes the state, not even its rounding. */
     void (*observe)(const void *state, struct grains *out);
 
+    /* Optional: gives grains around a point a velocity, at once (phases, live sessions).  NULL: the
+     * model cannot, and a scene that pushes is refused. */
+    void (*push)(void *state, const struct impulse *impulse);
+
     /* Names every byte that advance() depends on, for saving, loading and hashing alike.  A state
      * saved under a scene with other effects loads too (phases): see archive.h. */
     void (*archive)(void *state, struct archive *archive);
@@ -69,7 +74,8 @@ struct model {
     /* After ADVANCE_BROKEN: which grain, where, when and why. */
     const struct fault *(*fault)(const void *state);
 
-    /* Optional: fills a field for lattices too large to list (NULL: coarse-grain `observe`). */
+    /* Optional, for lattices too large to list: adds to the cells of a grid what stands there; the
+     * components are those of enum field_sample, zero before (NULL: coarse-grain `observe`). */
     bool (*sample)(const void *state, struct field *field);
 };
 

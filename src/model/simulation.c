@@ -15,6 +15,11 @@ static bool refuse_effects(const struct model *model, const struct scene *scene,
             "models that can run this scene: %s; or take it out of the scene", scene->path,
             model->name, effect_word(missing), effect_doc(missing), able);
     }
+    for (uint32_t p = 0; p < scene->phase_entry_count && !model->push; p++) {
+        if (scene->phase_entries[p].push.count == 0) continue;
+        return error_set_code(error, EXIT_SCENE, "%s: the grains of model '%s' cannot be pushed",
+                              scene->path, model->name);
+    }
     return true;
 }
 
@@ -33,30 +38,48 @@ void simulation_destroy(struct simulation *sim)
     *sim = (struct simulation){0};
 }
 
-/* Replaces the state by one created for `phase`'s scene that goes on where the old one is. */
-static bool enter_phase(struct simulation *sim, uint32_t phase, struct error *error)
+static void carry_out_pushes(struct simulation *sim)
 {
-    struct archive save, load;
-    archive_begin_save(&save);
-    sim->model->archive(sim->state, &save);
-    void *next = sim->model->create(sim->scene->phases[phase], error);
-    if (!next) {
-        archive_end(&save);
-        return false;
+    if (sim->phase == 0) return;
+    const struct key_reals *push = &sim->scene->phase_entries[sim->phase - 1].push;
+    for (uint32_t k = 0; k + PHASE_PUSH <= push->count; k += PHASE_PUSH) {
+        const double *v = &push->values[k];
+        sim->model->push(sim->state, &(struct impulse){v[0], v[1], v[2], v[3], v[4]});
     }
-    archive_begin_load(&load, save.bytes, save.size);
-    if (save.failed) archive_fail(&load, save.reason);
+}
+
+bool simulation_enter(struct simulation *sim, const struct scene *scene, uint32_t phase,
+                      const struct archive *before, struct error *error)
+{
+    if (scene != sim->scene && !refuse_effects(sim->model, scene, error)) return false;
+    void *next = sim->model->create(scene->phases[phase], error);
+    if (!next) return false;
+    struct archive load;
+    archive_begin_load(&load, before->bytes, before->size);
+    if (before->failed) archive_fail(&load, before->reason);
     else sim->model->archive(next, &load);
-    archive_end(&save);
     if (load.failed) {
         sim->model->destroy(next);
         return error_set(error, "phase %u cannot take over the state: %s", phase, load.reason);
     }
     sim->model->destroy(sim->state);
     sim->state = next;
+    sim->scene = scene;
     sim->phase = phase;
-    sim->phase_scene = sim->scene->phases[phase];
+    sim->phase_scene = scene->phases[phase];
+    carry_out_pushes(sim);
     return true;
+}
+
+/* Replaces the state by one created for `phase`'s scene that goes on where the old one is. */
+static bool enter_phase(struct simulation *sim, uint32_t phase, struct error *error)
+{
+    struct archive save;
+    archive_begin_save(&save);
+    sim->model->archive(sim->state, &save);
+    const bool done = simulation_enter(sim, sim->scene, phase, &save, error);
+    archive_end(&save);
+    return done;
 }
 
 enum advance simulation_advance(struct simulation *sim, double t_end, uint64_t budget,

@@ -33,6 +33,11 @@ void simulation_observe(const struct simulation *sim, struct grains *out);
 struct counters simulation_count(const struct simulation *sim);
 const struct tally *simulation_tally(const struct simulation *sim);     /* NULL: nothing */
 
+/* Goes on in `scene`, which has the same past, as its phase `phase` that begins now; `before` is
+ * what simulation_save() gave at this time, before the phase began.  On failure nothing changes. */
+bool simulation_enter(struct simulation *sim, const struct scene *scene, uint32_t phase,
+                      const struct archive *before, struct error *error);
+
 /* Hash of all that the future depends on. */
 uint64_t simulation_digest(const struct simulation *sim);
 

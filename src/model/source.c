@@ -5,6 +5,7 @@
 #include "scene/resolve.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const uint64_t rng_key = 0x736f75726365;         /* "source": apart from other streams */
 
@@ -132,6 +133,16 @@ double source_due(const struct scene *scene, uint32_t s, const struct source_cur
     const struct source *source = &scene->sources[s];
     if (source->count > 0 && cursor->made >= source->count) return INFINITY;
     return source_time(scene, s, cursor->next);
+}
+
+void source_archive(const struct scene *scene, struct source_cursor *cursors,
+                    struct archive *archive)
+{
+    for (uint32_t s = 0; s < scene->source_count; s++) {
+        char name[32];
+        snprintf(name, sizeof name, "source.%u", s);
+        archive_value(archive, name, &cursors[s]);
+    }
 }
 
 struct source_grain source_flown(const struct scene *scene, const struct source_grain *grain,

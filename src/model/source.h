@@ -36,6 +36,10 @@ uint32_t source_batch_max(const struct scene *scene);
 /* When the next batch of this source is due; INFINITY if it has given all. */
 double source_due(const struct scene *scene, uint32_t source, const struct source_cursor *cursor);
 
+/* Each source's cursor under a name of its own, so that a later phase may bring more of them. */
+void source_archive(const struct scene *scene, struct source_cursor *cursors,
+                    struct archive *archive);
+
 /* Where the grain is at time t if it has flown freely since its birth. */
 struct source_grain source_flown(const struct scene *scene, const struct source_grain *grain,
                                  double t);

@@ -8,10 +8,15 @@ static const double deviations_greatest = 4;
 double speed_at_start(const struct scene *scene, double deviations)
 {
     double speed = 0;
+    bool from_file = false;             /* velocities that only the grains themselves tell */
     for (uint32_t k = 0; k < scene->placement_count; k++) {
         const struct placement *p = &scene->placements[k];
         const double thermal = isfinite(p->temperature) ? deviations * sqrt(2 * p->temperature) : 0;
         speed = fmax(speed, hypot(p->velocity[0], p->velocity[1]) + thermal);
+        from_file = from_file || p->kind == PLACEMENT_FILE;
+    }
+    for (uint32_t k = 0; from_file && k < scene->placed.count; k++) {
+        speed = fmax(speed, hypot(scene->placed.vx[k], scene->placed.vy[k]));
     }
     for (uint32_t k = 0; k < scene->source_count; k++) {
         speed = fmax(speed, hypot(scene->sources[k].velocity[0], scene->sources[k].velocity[1]));

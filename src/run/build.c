@@ -11,6 +11,10 @@
 #include <fftw3.h>
 #include <ft2build.h>
 #include FT_FREETYPE_H
+#ifdef SANDREEL_MPI
+#include <mpi.h>
+#include <string.h>
+#endif
 
 const char *const build_version = SANDREEL_VERSION;
 
@@ -27,8 +31,22 @@ static json_t *freetype_version(void)
 
 json_t *build_versions(void)
 {
-    return json_pack("{s:s, s:s, s:s, s:o, s:s, s:s, s:s, s:i}",
+    json_t *versions = json_pack("{s:s, s:s, s:s, s:o, s:s, s:s, s:s, s:i}",
         "sandreel", build_version, "compiler", __VERSION__, "libpng", png_get_libpng_ver(NULL),
         "freetype", freetype_version(), "fftw", fftw_version, "jansson", jansson_version_str(),
         "libconfig", SANDREEL_LIBCONFIG, "openmp", _OPENMP);
+#ifdef SANDREEL_MICROHTTPD
+    json_object_set_new(versions, "libmicrohttpd", json_string(SANDREEL_MICROHTTPD));
+#endif
+#ifdef SANDREEL_HDF5
+    json_object_set_new(versions, "hdf5", json_string(SANDREEL_HDF5));
+#endif
+#ifdef SANDREEL_MPI
+    char library[MPI_MAX_LIBRARY_VERSION_STRING];
+    int length;
+    MPI_Get_library_version(library, &length);
+    library[strcspn(library, ",\n")] = 0;
+    json_object_set_new(versions, "mpi", json_string(library));
+#endif
+    return versions;
 }

@@ -70,9 +70,48 @@ void film_close(struct film *film)
     *film = (struct film){0};
 }
 
+/* What stands for the grains where they are too many to be drawn: their mean speed, or how much of
+ * the area they cover. */
+static bool average(const struct film *film, const struct field *sample, struct field *field,
+                    struct error *error)
+{
+    const size_t cells = (size_t)sample->nx * sample->ny;
+    const bool speed = film->view.color == COLOR_SPEED;
+    const double *count = sample->values + SAMPLE_COUNT * cells;
+    const double *sum = sample->values + (speed ? SAMPLE_SPEED : SAMPLE_AREA) * cells;
+    if (!field_create(field, sample->x0, sample->y0, sample->cell, sample->nx, sample->ny, 1,
+                      error)) return false;
+    field->time = sample->time;
+    const char *unit = scene_unit(film->scene, "speed");
+    if (speed) snprintf(field->label, sizeof field->label, "mean speed %s", unit);
+    else snprintf(field->label, sizeof field->label, "area fraction");
+    for (size_t k = 0; k < cells; k++) {
+        const double value = speed ? sum[k] / count[k] : sum[k] / (sample->cell * sample->cell);
+        field->values[k] = count[k] > 0 ? value : NAN;
+    }
+    return true;
+}
+
+/* {n} of labels: a sample's grains are not listed. */
+static double grains_of(const struct grains *grains)
+{
+    const struct field *sample = &grains->sample;
+    double sum = sample->values ? 0 : grains->count;
+    for (size_t k = 0; sample->values && k < (size_t)sample->nx * sample->ny; k++) {
+        sum += sample->values[SAMPLE_COUNT * (size_t)sample->nx * sample->ny + k];
+    }
+    return sum;
+}
+
+static bool has_field(const struct film *film, const struct grains *grains)
+{
+    return film->map || grains->sample.values;
+}
+
 static bool make_field(struct film *film, const struct grains *grains, struct field *field,
                        struct error *error)
 {
+    if (!film->map) return average(film, &grains->sample, field, error);
     map_clear(film->map);
     map_add(film->map, grains);
     return map_field(film->map, (enum map_kind)film->map_kind, field, error);
@@ -87,7 +126,7 @@ bool film_gather(struct film *film, const struct grains *grains, struct error *e
         for (uint32_t i = 0; i < grains->count; i++) quantile_add(&film->values, (double)values[i]);
         free(values);
     }
-    if (!film->map) return true;
+    if (!has_field(film, grains)) return true;
     struct field field;
     if (!make_field(film, grains, &field, error)) return false;
     const size_t cells = (size_t)field.nx * field.ny;
@@ -124,6 +163,29 @@ void film_settle(struct film *film)
     if (film->map) settle(&film->field_values, false, film->field_range);
 }
 
+void film_settle_together(struct film *const *films, uint32_t count)
+{
+    struct film *first = films[0];
+    for (uint32_t k = 1; k < count; k++) {
+        struct film *film = films[k];
+        if (film->view.color == first->view.color) quantile_merge(&first->values, &film->values);
+        if (film->map_kind == first->map_kind) {
+            quantile_merge(&first->field_values, &film->field_values);
+        }
+    }
+    film_settle(first);
+    for (uint32_t k = 1; k < count; k++) {
+        struct film *film = films[k];
+        if (film->view.color == first->view.color && isnan(film->range[0])) {
+            memcpy(film->range, first->range, sizeof film->range);
+        }
+        if (film->map_kind == first->map_kind && isnan(film->field_range[0])) {
+            memcpy(film->field_range, first->field_range, sizeof film->field_range);
+        }
+        film_settle(film);
+    }
+}
+
 static void set_variable(struct film *film, uint32_t index, const char *name, const char *format,
                          ...) __attribute__((format(printf, 4, 5)));
 
@@ -148,16 +210,23 @@ bool film_draw(struct film *film, const struct grains *grains, uint64_t steps, d
     set_variable(film, 4, "wall", "%.1f", wall);
     set_variable(film, 5, "method", "%s", film->model->name);
     struct field field = {0};
-    if (film->map && !make_field(film, grains, &field, error)) return false;
+    set_variable(film, 6, "n", "%.0f", grains_of(grains));
+    const bool shows = has_field(film, grains);
+    if (shows && !make_field(film, grains, &field, error)) return false;
     struct picture picture = {
-        .scene = scene_at(film->scene, grains->time), .view = &film->view, .grains = grains,
-        .field = film->map ? &field : NULL, .time = grains->time,
+        .scene = scene_at(film->scene, grains->time), .view = &film->view,
+        .grains = grains->sample.values ? NULL : grains, .field = shows ? &field : NULL,
+        .time = grains->time,
         .range = {film->range[0], film->range[1]},
         .field_range = {film->field_range[0], film->field_range[1]},
         .variables = film->variables, .variable_count = FILM_VARIABLES,
     };
+    if (grains->sample.values && !film->map) {
+        memcpy(picture.field_range, film->range, sizeof picture.field_range);
+    }
+    painter_place(&picture, &film->transform);
     const bool done = painter_frame(film->painter, &picture, &film->image, error);
-    if (film->map) field_free(&field);
+    if (shows) field_free(&field);
     return done;
 }
 
@@ -188,4 +257,16 @@ void film_describe(const struct film *film, double time, struct encoder_job *job
         note(job, "Range", "%s %.9g .. %.9g %s", painter_value_name(&film->view), film->range[0],
              film->range[1], scene_unit(scene, painter_value_dimension(&film->view)));
     }
+}
+
+bool film_save(const struct film *film, double time, const char *path, struct error *error)
+{
+    struct encoder_job job = {0};
+    struct image_note notes[ENCODER_NOTES];
+    film_describe(film, time, &job);
+    for (uint32_t k = 0; k < job.note_count; k++) {
+        notes[k] = (struct image_note){job.notes[k].key, job.notes[k].text};
+    }
+    return image_save(&film->image, path, film->scene->output.png_level, notes, job.note_count,
+                      error);
 }

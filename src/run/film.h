@@ -15,7 +15,7 @@
 #include "model/model.h"
 #include "run/encoder.h"
 
-enum { FILM_VARIABLES = 6 };
+enum { FILM_VARIABLES = 7 };
 
 struct film {
     const struct scene *scene;
@@ -23,6 +23,7 @@ struct film {
     struct view     view;
     struct painter *painter;
     struct image    image;              /* the last frame drawn */
+    struct transform transform;         /* where it shows the scene */
     struct map     *map;                /* of the field beneath the grains; NULL: none */
     int             map_kind;
     double          range[2], field_range[2];   /* NANs: each frame its own */
@@ -45,9 +46,16 @@ bool film_needs_contacts(const struct view *view);
 bool film_gather(struct film *film, const struct grains *grains, struct error *error);
 void film_settle(struct film *film);
 
+/* The same for films that are seen side by side: those that colour by the same quantity share its
+ * range, so that they can be compared.  What the first one gathered becomes that of all. */
+void film_settle_together(struct film *const *films, uint32_t count);
+
 /* Draws into film->image.  `steps` and `wall` fill the variables {steps} and {wall} of labels. */
 bool film_draw(struct film *film, const struct grains *grains, uint64_t steps, double wall,
                struct error *error);
+
+/* Saves the frame drawn last, which belongs to `time`, as a PNG file that tells about itself. */
+bool film_save(const struct film *film, double time, const char *path, struct error *error);
 
 /* What a PNG file of this frame tells about itself. */
 void film_describe(const struct film *film, double time, struct encoder_job *job);

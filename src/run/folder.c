@@ -124,7 +124,8 @@ bool folder_claim(const char *directory, bool force, struct error *error)
         || !file_exists(folder_path(manifest, directory, "manifest.json"))) {
         return true;
     }
-    static const char *const files[] = {"scene.cfg", "manifest.json", "log.csv", "broken.png"};
+    static const char *const files[] = {"scene.cfg", "manifest.json", "log.csv", "broken.png",
+                                        "impact.csv", "collisions.csv", "trajectory.h5"};
     for (size_t k = 0; k < sizeof folders / sizeof *folders; k++) {
         folder_clear(directory, folders[k]);
     }

@@ -4,19 +4,28 @@
  */
 #include "run/logbook.h"
 
-#include <errno.h>
+#include "measure/stress.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 /* A number as text: 12 digits, enough for every plot; the bytes are the same on every machine. */
 #define REAL "%.12g"
 
+/* C/N of cooperative, section 4. */
+#define EACH_ONCE "1 (each collision of two grains once)"
+
+/* The mean since the last row, and at this instant (measure/stress.h). */
+#define STRESS_COLUMNS                                                                  \
+    "stress_collisional_xx,stress_collisional_xy,stress_collisional_yx,"                \
+    "stress_collisional_yy,stress_kinetic_xx,stress_kinetic_xy,stress_kinetic_yy"
+
+enum { STRESS_COLUMN_COUNT = 7 };
+
 static void write_header(const struct logbook *logbook, const struct scene *scene)
 {
-    FILE *out = logbook->stream;
+    FILE *out = logbook->ledger.stream;
     fputs("time", out);
 #define X(name, dimension) fputs("," #name, out);
     LOG_WHOLES(X) LOG_ENERGIES(X) LOG_COLLISIONS(X) LOG_MOMENTA(X)
@@ -28,6 +37,8 @@ static void write_header(const struct logbook *logbook, const struct scene *scen
                 b);
     }
     if (logbook->masses) fputs(",mass_in,mass_out", out);
+    if (logbook->counts) fputs(",collisions_per_grain,elastic_per_grain", out);
+    if (logbook->stress) fputs("," STRESS_COLUMNS, out);
     fprintf(out, "\n# units: %s", scene_unit(scene, "time"));
 #define X(name, dimension) fprintf(out, ",%s", scene_unit(scene, dimension));
     LOG_WHOLES(X) LOG_ENERGIES(X) LOG_COLLISIONS(X) LOG_MOMENTA(X)
@@ -40,20 +51,11 @@ static void write_header(const struct logbook *logbook, const struct scene *scen
     }
     const char *mass = scene_unit(scene, "mass");
     if (logbook->masses) fprintf(out, ",%s,%s", mass, mass);
-    fputc('\n', out);
-}
-
-static bool flush(struct logbook *logbook, struct error *error)
-{
-    errno = 0;
-    if (fflush(logbook->stream) != 0 || ferror(logbook->stream)) {
-        logbook->failed = true;
-        return error_set(error, "%s: writing stopped: %s", logbook->path,
-                         errno ? strerror(errno) : "is the disk full?");
+    if (logbook->counts) fputs("," EACH_ONCE "," EACH_ONCE, out);
+    for (int k = 0; logbook->stress && k < STRESS_COLUMN_COUNT; k++) {
+        fprintf(out, ",%s", scene_unit(scene, "stress"));
     }
-    const long at = ftell(logbook->stream);
-    if (at >= 0) logbook->size = (uint64_t)at;
-    return true;
+    fputc('\n', out);
 }
 
 bool logbook_open(struct logbook *logbook, const char *path, const struct simulation *sim,
@@ -63,29 +65,14 @@ bool logbook_open(struct logbook *logbook, const char *path, const struct simula
     *logbook = (struct logbook){.body_count = tally ? tally->body_count : 0};
     logbook->masses = sim->scene->effects & (EFFECT_INFLOW | EFFECT_OUTFLOW | EFFECT_SCREEN)
                    && tally;
-    snprintf(logbook->path, sizeof logbook->path, "%s", path);
+    logbook->counts = scene_effects(sim->scene) & EFFECT_COLLISION_COUNT;
+    logbook->stress = scene_effects(sim->scene) & EFFECT_STRESS;
     logbook->impulse_last = calloc(3 * (size_t)logbook->body_count + 1, sizeof(double));
     if (!logbook->impulse_last) return error_set(error, "not enough memory for the log");
-    logbook->stream = fopen(path, resume ? "r+b" : "wb");
-    if (!logbook->stream) {
-        return error_set(error, "%s: cannot open this file: %s", path, strerror(errno));
-    }
+    if (!ledger_open(&logbook->ledger, path, resume, error)) return false;
     if (resume) return true;
     write_header(logbook, sim->scene);
-    return flush(logbook, error);
-}
-
-bool logbook_resume(struct logbook *logbook, struct error *error)
-{
-    bool done = fseek(logbook->stream, 0, SEEK_END) == 0;
-    const long end = ftell(logbook->stream);
-    if (!done || end < 0 || (uint64_t)end < logbook->size) {
-        return error_set(error, "%s: shorter than the checkpoint says; it cannot be continued",
-                         logbook->path);
-    }
-    done = ftruncate(fileno(logbook->stream), (off_t)logbook->size) == 0
-        && fseek(logbook->stream, (long)logbook->size, SEEK_SET) == 0;
-    return done || error_set(error, "%s: cannot be cut back: %s", logbook->path, strerror(errno));
+    return ledger_flush(&logbook->ledger, error);
 }
 
 /* The mean force since the last row: F = (impulse now - impulse then) / time between. */
@@ -97,19 +84,35 @@ static void write_bodies(struct logbook *logbook, const struct tally *tally, dou
         const double now[3] = {body->impulse_x, body->impulse_y, body->angular_impulse};
         double *last = logbook->impulse_last + 3 * (size_t)b;
         for (int k = 0; k < 3; k++) {
-            fprintf(logbook->stream, "," REAL, span > 0 ? (now[k] - last[k]) / span : 0.0);
+            fprintf(logbook->ledger.stream, "," REAL, span > 0 ? (now[k] - last[k]) / span : 0.0);
             last[k] = now[k];
         }
-        fprintf(logbook->stream, ",%" PRIu64, body->contacts);
+        fprintf(logbook->ledger.stream, ",%" PRIu64, body->contacts);
     }
 }
 
-bool logbook_row(struct logbook *logbook, const struct simulation *sim, double wall,
-                 struct error *error)
+static void write_stress(struct logbook *logbook, const struct tally *tally,
+                         const struct grains *grains, const struct scene *scene, double time)
+{
+    FILE *out = logbook->ledger.stream;
+    const double *box = scene->box, area = (box[2] - box[0]) * (box[3] - box[1]);
+    const double span = (time - logbook->time_last) * area;
+    for (int k = 0; k < 4; k++) {
+        const double now = tally ? tally->stress.total[k] : 0;
+        fprintf(out, "," REAL, span > 0 ? (now - logbook->stress_last[k]) / span : 0.0);
+        logbook->stress_last[k] = now;
+    }
+    double kinetic[3];
+    stress_kinetic(grains, scene, kinetic);
+    for (int k = 0; k < 3; k++) fprintf(out, "," REAL, kinetic[k]);
+}
+
+bool logbook_row(struct logbook *logbook, const struct simulation *sim,
+                 const struct grains *grains, double wall, struct error *error)
 {
     const struct counters now = simulation_count(sim);
     const struct tally *tally = simulation_tally(sim);
-    FILE *out = logbook->stream;
+    FILE *out = logbook->ledger.stream;
     fprintf(out, REAL, now.time);
 #define X(name, dimension) fprintf(out, ",%" PRIu64, now.name);
     LOG_WHOLES(X)
@@ -127,34 +130,30 @@ bool logbook_row(struct logbook *logbook, const struct simulation *sim, double w
 #undef X
     if (tally) write_bodies(logbook, tally, now.time);
     if (tally && logbook->masses) fprintf(out, "," REAL "," REAL, tally->mass_in, tally->mass_out);
+    if (logbook->counts) {
+        const double n = now.grains > 0 ? (double)now.grains : 1;
+        fprintf(out, "," REAL "," REAL, (double)now.collisions / n,
+                (double)now.collisions_elastic / n);
+    }
+    if (logbook->stress) write_stress(logbook, tally, grains, sim->phase_scene, now.time);
     fputc('\n', out);
     logbook->time_last = now.time;
-    logbook->rows++;
-    return flush(logbook, error);
-}
-
-bool logbook_sync(struct logbook *logbook, struct error *error)
-{
-    if (!flush(logbook, error)) return false;
-    return fsync(fileno(logbook->stream)) == 0
-        || error_set(error, "%s: writing stopped: %s", logbook->path, strerror(errno));
+    logbook->ledger.rows++;
+    return ledger_flush(&logbook->ledger, error);
 }
 
 void logbook_archive(struct logbook *logbook, struct archive *archive)
 {
-    archive_value(archive, "log.size", &logbook->size);
-    archive_value(archive, "log.rows", &logbook->rows);
+    ledger_archive(&logbook->ledger, "log", archive);
     archive_value(archive, "log.time_last", &logbook->time_last);
     archive_array(archive, "log.impulse_last", logbook->impulse_last,
                   3 * (size_t)logbook->body_count);
+    archive_array(archive, "log.stress_last", logbook->stress ? logbook->stress_last : NULL, 4);
 }
 
 void logbook_close(struct logbook *logbook)
 {
-    if (logbook->stream) fclose(logbook->stream);
-    if (logbook->failed && truncate(logbook->path, (off_t)logbook->size) != 0) {
-        unlink(logbook->path);          /* better no log than half a row */
-    }
+    ledger_close(&logbook->ledger);
     free(logbook->impulse_last);
     *logbook = (struct logbook){0};
 }

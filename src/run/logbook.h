@@ -1,7 +1,5 @@
-/* logbook.h - log.csv: one row each output.log interval, the same first columns for every model.
- *
- * A row is written whole and flushed, so the file can be watched while it grows.  After a
- * checkpoint is loaded the file is cut back to the rows that the checkpoint knew.
+/* logbook.h - log.csv: one row each output.log interval, the same first columns for every model,
+ * then what the scene measures.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -10,8 +8,7 @@
 
 #include "base/archive.h"
 #include "model/simulation.h"
-
-#include <stdio.h>
+#include "run/ledger.h"
 
 /* X(column, dimension) - each is a member of struct counters, except the last */
 #define LOG_WHOLES(X)                                                                   \
@@ -26,28 +23,23 @@
     X(overlap_max, "1")
 
 struct logbook {
-    FILE    *stream;
-    char     path[4096];
-    uint64_t size, rows;        /* bytes and rows that are safely written */
+    struct ledger ledger;
     uint32_t body_count;
     bool     masses;            /* columns mass_in, mass_out */
-    bool     failed;            /* a half row may be in the file: closing cuts it off */
+    bool     counts;            /* C/N: some phase counts collisions */
+    bool     stress;            /* some phase sums up the stress */
     double   time_last;         /* of the last row, for means since then */
     double  *impulse_last;      /* three for each obstacle: x, y, angular */
+    double   stress_last[4];    /* collisional sums */
 };
 
-/* Creates the file with its header lines, or opens it for `logbook_resume`. */
+/* Creates the file with its header lines, or opens it for `ledger_resume`. */
 bool logbook_open(struct logbook *logbook, const char *path, const struct simulation *sim,
                   bool resume, struct error *error);
 
-/* Cuts the file back to what the loaded archive knew. */
-bool logbook_resume(struct logbook *logbook, struct error *error);
-
-bool logbook_row(struct logbook *logbook, const struct simulation *sim, double wall,
-                 struct error *error);
-
-/* Brings the file to the disk, before a checkpoint refers to it. */
-bool logbook_sync(struct logbook *logbook, struct error *error);
+/* `grains` shows the present; it is read only where `stress` is set. */
+bool logbook_row(struct logbook *logbook, const struct simulation *sim,
+                 const struct grains *grains, double wall, struct error *error);
 
 void logbook_archive(struct logbook *logbook, struct archive *archive);
 void logbook_close(struct logbook *logbook);

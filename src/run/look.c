@@ -4,6 +4,33 @@
  */
 #include "run/look.h"
 
+#include <math.h>
+#include <string.h>
+
+enum { SAMPLE_SIDE = 1024 };            /* cells along the longer side of the box */
+
+bool look_samples(const struct simulation *sim)
+{
+    return sim->model->sample && simulation_count(sim).grains > LOOK_LIST_MAX;
+}
+
+static bool take_sample(const struct simulation *sim, struct grains *grains, struct error *error)
+{
+    struct field *sample = &grains->sample;
+    if (!sample->values) {
+        const double *box = sim->scene->box;
+        const double width = box[2] - box[0], height = box[3] - box[1];
+        const double cell = fmax(width, height) / SAMPLE_SIDE;
+        grains_free(grains);
+        if (!field_create(sample, box[0], box[1], cell, (uint32_t)ceil(width / cell - 1e-9),
+                          (uint32_t)ceil(height / cell - 1e-9), SAMPLES, error)) return false;
+    }
+    memset(sample->values, 0, sizeof *sample->values * SAMPLES * sample->nx * sample->ny);
+    grains->time = sample->time = simulation_count(sim).time;
+    return sim->model->sample(sim->state, sample)
+        || error_set(error, "not enough memory for a look at the lattice");
+}
+
 static bool make_room(struct grains *grains, uint32_t count, uint32_t contacts,
                       struct error *error)
 {
@@ -15,6 +42,8 @@ static bool make_room(struct grains *grains, uint32_t count, uint32_t contacts,
 bool look_at(const struct simulation *sim, struct grains *grains, bool contacts,
              struct error *error)
 {
+    if (look_samples(sim)) return take_sample(sim, grains, error);
+    if (grains->sample.values) grains_free(grains);     /* there were more of them before */
     const uint64_t now = simulation_count(sim).grains;
     uint32_t count = now < UINT32_MAX / 2 ? (uint32_t)now + 16 : UINT32_MAX / 2;
     /* A disc packing has two contacts a grain at rest (isostatic with friction: 1.5); room for

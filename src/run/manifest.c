@@ -62,6 +62,16 @@ static json_t *seconds(const struct run_result *result)
     }
     json_object_set_new(list, "total",
                         json_pack("{s:f, s:f}", "wall", result->wall, "cpu", cpu));
+    json_object_set_new(list, "per_simulated_time", json_real(result->per_time));
+    json_object_set_new(list, "per_step", json_real(result->per_step));
+    return list;
+}
+
+/* The effects of `set`, each by its word. */
+static json_t *effects(effects_t set)
+{
+    json_t *list = json_array();
+    for (; set; set &= set - 1) json_array_append_new(list, json_string(effect_word(set)));
     return list;
 }
 
@@ -88,6 +98,9 @@ static json_t *describe(const struct manifest *manifest)
     json_object_set_new(root, "state_digest", hash_word(result->digest));
     json_object_set_new(root, "counts", counts(result));
     json_object_set_new(root, "seconds", seconds(result));
+    json_object_set_new(root, "effects", effects(result->effects));
+    json_object_set_new(root, "effects_left_out",
+                        effects((((effects_t)1 << EFFECT_COUNT) - 1) & ~result->effects));
     return root;
 }
 

@@ -136,6 +136,21 @@ static bool write_one(struct mapper *mapper, const struct field *field, int form
     }
 }
 
+bool mapper_write_field(struct mapper *mapper, const struct field *field, const char *directory,
+                        const char *suffix, struct error *error)
+{
+    bool done = true;
+    for (int f = 0; done && f < MAPPER_FORMAT_COUNT; f++) {
+        char path[FILE_PATH_MAX];
+        if (!(mapper->formats >> f & 1)) continue;
+        if (f == MAPPER_BIT_png && field->components > 2) continue;
+        folder_path(path, directory, "%s_%s.%s", field->name, suffix, format_names[f]);
+        done = (!mapper->keeps || file_absent(path, error))
+            && write_one(mapper, field, f, path, error);
+    }
+    return done;
+}
+
 bool mapper_write(struct mapper *mapper, const char *directory, const char *suffix,
                   struct error *error)
 {
@@ -143,13 +158,7 @@ bool mapper_write(struct mapper *mapper, const char *directory, const char *suff
     for (uint32_t k = 0; done && k < mapper->kind_count; k++) {
         struct field field;
         if (!map_field(mapper->map, (enum map_kind)mapper->kinds[k], &field, error)) return false;
-        for (int f = 0; done && f < MAPPER_FORMAT_COUNT; f++) {
-            char path[FILE_PATH_MAX];
-            if (!(mapper->formats >> f & 1)) continue;
-            folder_path(path, directory, "%s_%s.%s", field.name, suffix, format_names[f]);
-            done = !mapper->keeps || file_absent(path, error);
-            done = done && write_one(mapper, &field, f, path, error);
-        }
+        done = mapper_write_field(mapper, &field, directory, suffix, error);
         field_free(&field);
     }
     return done;

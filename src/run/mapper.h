@@ -51,4 +51,8 @@ void mapper_add(struct mapper *mapper, const struct grains *grains);
 bool mapper_write(struct mapper *mapper, const char *directory, const char *suffix,
                   struct error *error);
 
+/* The same for a field from elsewhere; tensors have no picture. */
+bool mapper_write_field(struct mapper *mapper, const struct field *field, const char *directory,
+                        const char *suffix, struct error *error);
+
 #endif

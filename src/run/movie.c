@@ -5,18 +5,14 @@
 #include "run/movie.h"
 
 #include "base/file.h"
+#include "run/program.h"
 
 #include <assert.h>
 #include <errno.h>
-#include <fcntl.h>
-#include <poll.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 struct format {
@@ -37,11 +33,8 @@ static const struct format formats[] = {
 };
 
 struct movie {
-    pid_t    process;
-    int      pipe;              /* we write, ffmpeg reads */
-    FILE    *complaints;        /* what ffmpeg says goes into this unnamed file */
+    struct program program;     /* ffmpeg */
     uint32_t width, height;
-    bool     torn;              /* a signal came while ffmpeg did not read: given up */
     uint8_t *flat;              /* a frame laid on white; made when first needed */
     char     path[FILE_PATH_MAX], partial[FILE_PATH_MAX + 16];
 };
@@ -63,30 +56,9 @@ bool movie_name_ok(const char *path, struct error *error)
 
 bool movie_available(struct error *error)
 {
-    const char *path = getenv("PATH");
-    while (path && *path) {
-        const size_t length = strcspn(path, ":");
-        char name[FILE_PATH_MAX];
-        snprintf(name, sizeof name, "%.*s/ffmpeg", (int)length, path);
-        if (length > 0 && access(name, X_OK) == 0) return true;
-        path += length + (path[length] == ':');
-    }
-    return error_set(error, "movies need the program ffmpeg, which is not on the PATH; install it "
+    return program_is_there("ffmpeg")
+        || error_set(error, "movies need the program ffmpeg, which is not on the PATH; install it "
                      "(Debian: sudo apt install ffmpeg), or write frames instead of a movie");
-}
-
-/* In the child: becomes ffmpeg.  Only async-signal-safe calls until exec. */
-static void become_ffmpeg(int input, int complaints, char *const *arguments)
-{
-    setpgid(0, 0);
-    prctl(PR_SET_PDEATHSIG, SIGKILL);   /* whose run is killed, its film is of no use */
-    signal(SIGPIPE, SIG_DFL);
-    const int nothing = open("/dev/null", O_WRONLY);
-    dup2(input, STDIN_FILENO);
-    dup2(nothing, STDOUT_FILENO);
-    dup2(complaints, STDERR_FILENO);
-    execvp(arguments[0], arguments);
-    _exit(127);
 }
 
 static bool start(struct movie *movie, const struct format *format, double frame_rate,
@@ -109,20 +81,12 @@ static bool start(struct movie *movie, const struct format *format, double frame
     for (size_t k = 0; k < sizeof ends_with / sizeof *ends_with; k++) {
         arguments[count++] = ends_with[k];
     }
-    int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) return error_set(error, "no pipe: %s", strerror(errno));
-    movie->process = fork();
-    if (movie->process == 0) {
-        become_ffmpeg(ends[0], fileno(movie->complaints), (char *const *)(uintptr_t)arguments);
-    }
-    close(ends[0]);
-    movie->pipe = ends[1];
-    return movie->process > 0 || error_set(error, "cannot start ffmpeg: %s", strerror(errno));
+    return program_start(&movie->program, arguments, NULL, error);
 }
 
 static void movie_free(struct movie *movie)
 {
-    if (movie->complaints) fclose(movie->complaints);
+    program_close(&movie->program);
     free(movie->flat);
     free(movie);
 }
@@ -140,61 +104,22 @@ struct movie *movie_begin(const char *path, uint32_t width, uint32_t height, dou
         error_set(error, "not enough memory for a movie");
         return NULL;
     }
-    movie->pipe = -1;
+    movie->program.pipe = -1;
     movie->width = width;
     movie->height = height;
     snprintf(movie->path, sizeof movie->path, "%s", path);
     snprintf(movie->partial, sizeof movie->partial, "%s.partial", path);
-    movie->complaints = tmpfile();
-    if (!movie->complaints) error_set(error, "cannot make a temporary file: %s", strerror(errno));
-    if (movie->complaints && start(movie, find_format(path), frame_rate, error)) return movie;
-    if (movie->pipe >= 0) close(movie->pipe);
+    if (start(movie, find_format(path), frame_rate, error)) return movie;
     movie_free(movie);
     return NULL;
 }
 
-/* Ends ffmpeg's input and waits; true if it was content. */
-static bool finish(struct movie *movie)
-{
-    if (movie->pipe >= 0) close(movie->pipe);
-    movie->pipe = -1;
-    int status = 0;
-    pid_t ended;
-    do ended = waitpid(movie->process, &status, 0);
-    while (ended < 0 && errno == EINTR);
-    movie->process = 0;
-    return ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
 static bool complain(struct movie *movie, struct error *error)
 {
-    char words[300] = "";
-    rewind(movie->complaints);
-    const size_t size = fread(words, 1, sizeof words - 1, movie->complaints);
-    words[size] = 0;
-    for (char *at = words; *at; at++) if (*at == '\n' || *at == '\r') *at = ' ';
+    char words[300];
+    program_words(&movie->program, words, sizeof words);
     return error_set(error, "%s: ffmpeg could not write this movie: %s", movie->path,
                      *words ? words : "it ended early; is the disk full?");
-}
-
-/* After a signal ffmpeg has so long to read on; it needs milliseconds unless it hangs. */
-enum { PATIENCE_MS = 3000 };
-
-/* A signal while ffmpeg hangs gives the film up, not the run: whoever asked for the end must not
- * wait forever.  Only a signal lets write() to a pipe return before all is written. */
-static bool send(struct movie *movie, const uint8_t *bytes, size_t size)
-{
-    while (size > 0 && !movie->torn) {
-        const ssize_t sent = write(movie->pipe, bytes, size);
-        if (sent < 0 && errno != EINTR) return false;
-        if (sent > 0) {
-            bytes += sent;
-            size -= (size_t)sent;
-        }
-        struct pollfd room = {.fd = movie->pipe, .events = POLLOUT};
-        if (size > 0) movie->torn = poll(&room, 1, PATIENCE_MS) == 0;
-    }
-    return true;
 }
 
 /* The picture itself if it is opaque, else a copy laid on white; NULL without memory. */
@@ -223,20 +148,20 @@ bool movie_frame(struct movie *movie, const struct image *image, struct error *e
     assert(image->height == movie->height);
     const uint8_t *bytes = flatten(movie, image);
     if (!bytes) return error_set(error, "not enough memory for a frame of the movie");
-    if (send(movie, bytes, (size_t)4 * image->width * image->height)) return true;
-    finish(movie);
+    if (program_send(&movie->program, bytes, (size_t)4 * image->width * image->height)) return true;
+    program_finish(&movie->program);
     return complain(movie, error);
 }
 
 bool movie_commit(struct movie *movie, struct error *error)
 {
-    if (movie->torn) {
+    if (movie->program.hangs) {
         error_set(error, "%s: a signal came while ffmpeg did not read; no movie was made",
                   movie->path);
         movie_abandon(movie);
         return false;
     }
-    bool done = movie->process > 0 && finish(movie);
+    bool done = program_finish(&movie->program);
     if (!done) complain(movie, error);
     if (done) file_sync(movie->partial);
     if (done && rename(movie->partial, movie->path) != 0) {
@@ -250,10 +175,8 @@ bool movie_commit(struct movie *movie, struct error *error)
 void movie_abandon(struct movie *movie)
 {
     if (!movie) return;
-    if (movie->process > 0) {
-        kill(movie->process, SIGKILL);          /* it may wait for something, and need not tidy */
-        finish(movie);
-    }
+    movie->program.hangs = true;        /* its work goes away: it need not tidy up */
+    program_stop(&movie->program);
     unlink(movie->partial);
     movie_free(movie);
 }

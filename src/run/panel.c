@@ -59,30 +59,6 @@ static bool record(const struct panel_request *request, uint32_t p, uint32_t fra
     return true;
 }
 
-/* Panels that colour by the same quantity share its range, so that they can be compared. */
-static void settle(const struct panel_request *request)
-{
-    struct film *first = &request->panels[0].film;
-    for (uint32_t p = 1; p < request->count; p++) {
-        struct film *film = &request->panels[p].film;
-        if (film->view.color == first->view.color) quantile_merge(&first->values, &film->values);
-        if (film->map_kind == first->map_kind) {
-            quantile_merge(&first->field_values, &film->field_values);
-        }
-    }
-    film_settle(first);
-    for (uint32_t p = 1; p < request->count; p++) {
-        struct film *film = &request->panels[p].film;
-        if (film->view.color == first->view.color && isnan(film->range[0])) {
-            memcpy(film->range, first->range, sizeof film->range);
-        }
-        if (film->map_kind == first->map_kind && isnan(film->field_range[0])) {
-            memcpy(film->field_range, first->field_range, sizeof film->field_range);
-        }
-        film_settle(film);
-    }
-}
-
 static bool draw_panel(const struct panel_request *request, struct panel *panel, uint32_t k,
                        bool recorded, struct error *error)
 {
@@ -98,15 +74,6 @@ static bool draw_panel(const struct panel_request *request, struct panel *panel,
                      error);
 }
 
-/* Copies a panel's picture into its place in the whole. */
-static void place(struct image *whole, const struct image *part, uint32_t x0)
-{
-    for (uint32_t y = 0; y < part->height; y++) {
-        memcpy(whole->rgba + 4 * ((size_t)y * whole->width + x0),
-               part->rgba + 4 * (size_t)y * part->width, 4 * (size_t)part->width);
-    }
-}
-
 static bool draw(const struct panel_request *request, uint32_t frames, bool recorded,
                  struct movie *movie, struct image *whole, struct error *error)
 {
@@ -117,7 +84,7 @@ static bool draw(const struct panel_request *request, uint32_t frames, bool reco
             if (stopped(request, error) || !draw_panel(request, panel, k, recorded, error)) {
                 return false;
             }
-            place(whole, &panel->film.image, x0);
+            image_place(whole, &panel->film.image, x0, 0);
             x0 += panel->film.image.width;
         }
         if (!movie_frame(movie, whole, error)) return false;
@@ -182,7 +149,9 @@ bool panel_film(const struct panel_request *request, uint64_t *frames, struct er
         for (uint32_t p = 0; done && p < request->count; p++) {
             done = record(request, p, (uint32_t)count, error);
         }
-        settle(request);
+        struct film *films[PANEL_MAX];
+        for (uint32_t p = 0; p < request->count; p++) films[p] = &request->panels[p].film;
+        film_settle_together(films, request->count);
     }
     done = done && draw(request, (uint32_t)count, needs_record, movie, &whole, error);
     if (done) done = movie_commit(movie, error);

@@ -15,6 +15,7 @@
 #include "run/manifest.h"
 #include "run/recall.h"
 #include "run/resolved.h"
+#include "run/stand_alone.h"
 #include "run/writer.h"
 
 #include <errno.h>
@@ -78,7 +79,8 @@ static bool settle_scene(struct run *run)
     char path[FILE_PATH_MAX], fresh[FILE_PATH_MAX];
     folder_path(path, run->directory, "scene.cfg");
     folder_path(fresh, run->directory, "scene.cfg.new");
-    if (!scene_write(run->scene, fresh, run->error)) return false;
+    if (!stand_alone_write(run->scene, run->directory, run->request->resume, fresh,
+                           run->error)) return false;
     run->scene_text = load_text(fresh, run->error);
     if (!run->scene_text) return false;
     run->scene_hash = resolved_hash(run->scene_text);
@@ -305,9 +307,15 @@ static void fill_result(struct run *run, struct run_result *result)
     result->parts = run->parts;
     result->cpu_encode = encoder_cpu(run->writer.encoder);
     result->wall = wall_now(run);
+    for (uint32_t p = 0; p < run->scene->phase_count; p++) {
+        result->effects |= run->scene->phases[p]->effects;
+    }
+    const double span = result->counters.time - run->time_start;
+    if (span > 0) result->per_time = run->parts.wall[PART_core] / span;
+    if (run->work_done > 0) result->per_step = run->parts.wall[PART_core] / run->work_done;
     result->frames = run->writer.schedules[WRITER_FRAME].next;
     result->maps = run->writer.maps;
-    result->log_rows = run->writer.logbook.rows;
+    result->log_rows = run->writer.logbook.ledger.rows;
     result->range[0] = run->writer.draws ? run->writer.film.range[0] : NAN;
     result->range[1] = run->writer.draws ? run->writer.film.range[1] : NAN;
 }

@@ -42,6 +42,8 @@ struct run_result {
     struct counters counters;   /* at the end */
     struct parts parts;
     double   cpu_encode, wall;
+    effects_t effects;          /* of all phases */
+    double   per_time, per_step;        /* wall seconds of the model alone; 0: it did nothing */
     uint64_t digest, frames, maps, log_rows;
     double   range[2];          /* of the colours */
 };

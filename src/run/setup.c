@@ -80,9 +80,10 @@ bool setup_load(struct setup *setup, const struct setup_request *request, struct
         .path = request->path, .text = request->text, .overrides = request->overrides,
         .override_count = request->override_count, .groups = groups,
         .group_count = model_settings(groups), .place = request->place,
+        .grains_of = request->grains_of,
     };
     const bool is_run = setup_is_run(request->path);
-    if (is_run) {
+    if (is_run && !request->text) {
         snprintf(inside, sizeof inside, "%s/scene.cfg", request->path);
         wanted.path = inside;
     }

@@ -23,6 +23,7 @@ struct setup_request {
     const char *const *overrides;
     uint32_t override_count;
     bool place;                 /* place the grains: needed to simulate, not to draw dumps */
+    const struct scene *grains_of;      /* or take over those of another scene; NULL */
 };
 
 /* EXIT_SCENE if the scene has errors: then setup->findings tells them, and the error only counts

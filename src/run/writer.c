@@ -30,6 +30,8 @@ static void set_schedules(struct writer *writer, const struct scene *scene)
     schedules[WRITER_FRAME].interval = output->frames;
     schedules[WRITER_LOG].interval = output->log;
     schedules[WRITER_MAP].interval = output->maps;
+    schedules[WRITER_TALLY].interval = output->tallies;
+    schedules[WRITER_TRAJECTORY].interval = output->trajectory;
     const double *average = scene->measure.average;
     writer->averages = isfinite(average[0]) && isfinite(average[1]) && average[1] > average[0]
                     && (output->maps > 0 || scene->measure.fields.count > 0);
@@ -99,11 +101,28 @@ static bool open_pictures(struct writer *writer, bool resume, struct error *erro
      * be found anew, so the new frames take them over. */
     if (resume && !file_exists(path)) recall_range(writer->directory, scene, &view);
     if (!film_open(&writer->film, scene, writer->sim->model, &view, error)) return false;
-    writer->draws_later = film_needs_gathering(&writer->film);
+    /* What is not listed is not kept either, so then each frame is coloured by itself. */
+    writer->draws_later = film_needs_gathering(&writer->film) && !look_samples(writer->sim);
+    if (scene->output.dump && look_samples(writer->sim)) {
+        return error_set_code(error, EXIT_SCENE, "%s: more than %d grains are not listed, so their "
+            "states cannot be kept; delete output.dump", scene->path, LOOK_LIST_MAX);
+    }
     writer->keeps_grains = scene->output.dump || writer->draws_later;
     if (resume && !writer->keeps_grains) folder_clear(writer->directory, "dump");
     writer->movie_late = *scene->output.movie && resume && !writer->draws_later;
     return !*scene->output.movie || writer->draws_later || resume || begin_movie(writer, error);
+}
+
+/* A new one; an earlier run's is opened once it is known how much of it counts. */
+static bool begin_trajectory(struct writer *writer, bool resume, struct error *error)
+{
+    char path[FILE_PATH_MAX];
+    if (!(writer->schedules[WRITER_TRAJECTORY].interval > 0)) return true;
+    if (!h5md_available(error)) return false;
+    if (resume) return true;
+    writer->h5md = h5md_create(folder_path(path, writer->directory, "trajectory.h5"),
+                               writer->sim->scene, error);
+    return writer->h5md != NULL;
 }
 
 bool writer_open(struct writer *writer, const struct simulation *sim, const char *directory,
@@ -123,8 +142,14 @@ bool writer_open(struct writer *writer, const struct simulation *sim, const char
         && !mapper_open(&writer->mapper, scene, &scene->view, &scene->measure, formats, error)) {
         return false;
     }
+    if (writer->schedules[WRITER_MAP].interval > 0 && scene_effects(scene) & EFFECT_STRESS) {
+        writer->stress = stress_create(scene, error);
+        if (!writer->stress) return false;
+        stress_begin(writer->stress, simulation_tally(sim), 0);
+    }
     char path[FILE_PATH_MAX];
-    return make_folders(writer, error)
+    return make_folders(writer, error) && begin_trajectory(writer, resume, error)
+        && histograms_open(&writer->histograms, directory, sim, resume, error)
         && (!writer->keeps_grains || resume
             || dumps_begin(&writer->dumps, directory, 0, error))
         && (!(scene->output.log > 0)
@@ -138,11 +163,18 @@ bool writer_resume(struct writer *writer, struct error *error)
     if (writer->keeps_grains && !dumps_begin(&writer->dumps, writer->directory, frames, error)) {
         return false;
     }
+    if (writer->schedules[WRITER_TRAJECTORY].interval > 0) {
+        char path[FILE_PATH_MAX];
+        writer->h5md = h5md_resume(folder_path(path, writer->directory, "trajectory.h5"),
+                                   writer->schedules[WRITER_TRAJECTORY].next, error);
+        if (!writer->h5md) return false;
+    }
     for (uint64_t k = 0; writer->draws_later && k < frames; k++) {
         if (!dumps_load(&writer->dumps, (uint32_t)k, &writer->grains, error)) return false;
         if (!film_gather(&writer->film, &writer->grains, error)) return false;
     }
-    return !writer->logbook.stream || logbook_resume(&writer->logbook, error);
+    return histograms_resume(&writer->histograms, error)
+        && (!writer->logbook.ledger.stream || ledger_resume(&writer->logbook.ledger, error));
 }
 
 static bool submit_frame(struct writer *writer, double time, uint64_t index, struct error *error)
@@ -185,13 +217,43 @@ static bool serve_map(struct writer *writer, uint64_t index, struct error *error
     char path[FILE_PATH_MAX], suffix[24] = "mean";
     folder_path(path, writer->directory, "maps");
     if (!look(writer, false, error)) return false;
+    const struct tally *tally = simulation_tally(writer->sim);
     if (!writer->averages) mapper_clear(&writer->mapper);
+    else if (writer->stress && !(writer->grains.time > schedule->from)) {
+        stress_begin(writer->stress, tally, writer->grains.time);
+    }
     mapper_add(&writer->mapper, &writer->grains);
+    if (writer->stress) stress_add(writer->stress, &writer->grains);
     if (writer->averages && isfinite(schedule_time(schedule))) return true;
     if (!writer->averages) snprintf(suffix, sizeof suffix, "%06llu", (unsigned long long)index);
     enter(writer, PART_files);
     writer->maps++;
-    return mapper_write(&writer->mapper, path, suffix, error);
+    bool done = mapper_write(&writer->mapper, path, suffix, error);
+    if (!writer->stress) return done;
+    for (int kind = 0; done && kind < STRESS_KINDS; kind++) {
+        struct field field;
+        done = stress_field(writer->stress, (enum stress_kind)kind, tally, writer->grains.time,
+                            &field, error)
+            && mapper_write_field(&writer->mapper, &field, path, suffix, error);
+        field_free(&field);
+    }
+    stress_begin(writer->stress, tally, writer->grains.time);
+    return done;
+}
+
+static bool serve_log(struct writer *writer, double wall, struct error *error)
+{
+    if (writer->logbook.stress && !look(writer, false, error)) return false;
+    enter(writer, PART_files);
+    return logbook_row(&writer->logbook, writer->sim, &writer->grains, wall, error);
+}
+
+static bool serve_histograms(struct writer *writer, struct error *error)
+{
+    if (!histograms_wanted(&writer->histograms)) return true;
+    if (!look(writer, false, error)) return false;
+    enter(writer, PART_files);
+    return histograms_block(&writer->histograms, writer->sim, &writer->grains, error);
 }
 
 bool writer_serve(struct writer *writer, double t, double wall, struct error *error)
@@ -204,10 +266,16 @@ bool writer_serve(struct writer *writer, double t, double wall, struct error *er
         const uint64_t index = schedule->next++;
         switch ((enum writer_event)e) {
         case WRITER_FRAME: done = serve_frame(writer, index, wall, error); break;
-        case WRITER_LOG:
-            done = logbook_row(&writer->logbook, writer->sim, wall, error);
-            break;
+        case WRITER_LOG: done = serve_log(writer, wall, error); break;
+        case WRITER_TALLY: done = serve_histograms(writer, error); break;
         case WRITER_MAP: done = serve_map(writer, index, error); break;
+        case WRITER_TRAJECTORY:
+            done = look(writer, false, error);
+            enter(writer, PART_files);
+            done = done && grains_sort(&writer->grains, error)
+                && h5md_add(writer->h5md, &writer->grains,
+                            simulation_count(writer->sim).steps, error);
+            break;
         case WRITER_EVENTS: break;
         }
     }
@@ -223,7 +291,9 @@ bool writer_sync(struct writer *writer, struct error *error)
         char path[FILE_PATH_MAX];
         file_sync(folder_path(path, writer->directory, "%s", folders[k]));
     }
-    return !writer->logbook.stream || logbook_sync(&writer->logbook, error);
+    return histograms_sync(&writer->histograms, error)
+        && (!writer->logbook.ledger.stream || ledger_sync(&writer->logbook.ledger, error))
+        && (!writer->h5md || h5md_sync(writer->h5md, error));
 }
 
 /* Frames whose colours had to wait for the whole run. */
@@ -284,7 +354,12 @@ bool writer_finish(struct writer *writer, double wall, bool (*step)(void *, uint
     const enum part before = enter(writer, PART_files);
     bool done = true;
     if (writer->draws_later) done = draw_dumps(writer, wall, step, context, error);
-    done = done && writer_sync(writer, error) && save_screens(writer, error);
+    done = done && serve_histograms(writer, error) && writer_sync(writer, error)
+        && save_screens(writer, error);
+    if (done && writer->h5md) {
+        done = h5md_close(writer->h5md, error);
+        writer->h5md = NULL;
+    }
     if (done && writer->movie_late) done = movie_from_frames(writer, error);
     if (done && writer->movie) {
         done = movie_commit(writer->movie, error);
@@ -311,7 +386,9 @@ void writer_archive(struct writer *writer, struct archive *archive)
     archive_array(archive, "run.next", next, WRITER_EVENTS);
     for (int e = 0; e < WRITER_EVENTS; e++) writer->schedules[e].next = next[e];
     archive_value(archive, "run.maps", &writer->maps);
-    if (writer->logbook.stream) logbook_archive(&writer->logbook, archive);
+    histograms_archive(&writer->histograms, archive);
+    if (writer->stress) stress_archive(writer->stress, archive);
+    if (writer->logbook.ledger.stream) logbook_archive(&writer->logbook, archive);
     if (writer->averages) map_archive(writer->mapper.map, archive);
 }
 
@@ -320,9 +397,12 @@ void writer_close(struct writer *writer)
     movie_abandon(writer->movie);
     encoder_destroy(writer->encoder);
     logbook_close(&writer->logbook);
+    histograms_close(&writer->histograms);
+    stress_destroy(writer->stress);
     film_close(&writer->film);
     mapper_close(&writer->mapper);
     dumps_close(&writer->dumps);
+    h5md_close(writer->h5md, NULL);
     grains_free(&writer->grains);
     *writer = (struct writer){0};
 }

@@ -1,4 +1,5 @@
-/* writer.h - what a run writes while it goes: frames, dumps, maps, log rows, a movie.
+/* writer.h - what a run writes while it goes: frames, dumps, maps, log rows, histograms, a
+ * trajectory, a movie.
  *
  * Every output has its own interval in simulated time and happens at whole multiples of it; all
  * of it only looks at the simulation.  When the colours of the frames are only known after the
@@ -9,16 +10,21 @@
 #ifndef WRITER_H
 #define WRITER_H
 
+#include "measure/stress.h"
 #include "model/simulation.h"
 #include "run/dumps.h"
 #include "run/encoder.h"
 #include "run/film.h"
+#include "run/histograms.h"
+#include "run/h5md.h"
 #include "run/logbook.h"
 #include "run/mapper.h"
 #include "run/movie.h"
 #include "run/parts.h"
 
-enum writer_event { WRITER_FRAME, WRITER_LOG, WRITER_MAP, WRITER_EVENTS };
+enum writer_event {
+    WRITER_FRAME, WRITER_LOG, WRITER_MAP, WRITER_TALLY, WRITER_TRAJECTORY, WRITER_EVENTS
+};
 
 struct schedule {
     double   interval;          /* 0: never */
@@ -35,8 +41,11 @@ struct writer {
     struct movie   *movie;      /* fed while running; NULL: none, or made afterwards */
     struct logbook  logbook;
     struct film     film;
+    struct histograms histograms;
     struct mapper   mapper;
+    struct stress  *stress;     /* NULL: no maps of it */
     struct dumps    dumps;
+    struct h5md    *h5md;       /* the trajectory; NULL: none */
     struct grains   grains;
     bool   draws;               /* frames are wanted */
     bool   draws_later;         /* ... but only once the whole run is known */

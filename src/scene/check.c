@@ -141,6 +141,12 @@ static void check_placement(struct check check, const struct placement *placemen
               "reaches out of the box (%g, %g, %g, %g); make it smaller or the box larger", box[0],
               box[1], box[2], box[3]);
     }
+    if (placement->kind == PLACEMENT_FILE && !placement->file[0]) {
+        ERROR("kind", "a placement from a file needs 'file'; add file = \"grains.csv\";");
+    }
+    if (placement->kind != PLACEMENT_FILE && placement->file[0]) {
+        ERROR("file", "is read only with kind = \"file\"; add that, or delete it");
+    }
     if (placement->kind == PLACEMENT_RANDOM) check_random(check, placement);
     else if (!isnan(placement->fraction)) {
         WARNING("fraction", "is for random placements; a lattice's density follows from 'spacing'");
@@ -360,7 +366,7 @@ double check_placed_estimate(const struct scene *scene)
         const double area = place_area(scene, placement);
         const double d = 2 * resolve_radius_max(species) * placement->spacing;
         double most = area / (d * d * (placement->kind == PLACEMENT_SQUARE ? 1 : 0.8660254));
-        if (placement->kind == PLACEMENT_RANDOM) {
+        if (placement->kind >= PLACEMENT_RANDOM) {      /* unknown until a file is read */
             most = 0.91 * area / resolve_area_mean(species);
             if (!isnan(placement->fraction)) most *= placement->fraction / 0.91;
         }
@@ -436,8 +442,7 @@ void check_scene(const struct scene *scene, struct findings *findings)
 
 /* What a phase cannot change, because the grains are there already. */
 static const char *const fixed_keys[] = {"placements", "box", "seed", "phases", "quick",
-                                         "quick_set",
-                                         "count_max", "units", "until", "model", "title"};
+                                         "quick_set", "units", "until", "model", "title"};
 
 static void check_phase(struct check check, const struct phase_entry *entry)
 {
@@ -451,6 +456,15 @@ static void check_phase(struct check check, const struct phase_entry *entry)
     if (entry->time >= scene->until) {
         WARNING("time", "the phase begins at %g, but the run ends at %g", entry->time,
                 scene->until);
+    }
+    if (entry->push.count % PHASE_PUSH != 0) {
+        ERROR("push", "a push is five numbers (x, y, radius, vx, vy), or five for each of several; "
+              "these are %u", entry->push.count);
+    }
+    for (uint32_t k = 2; k < entry->push.count; k += PHASE_PUSH) {
+        if (entry->push.values[k] > 0) continue;
+        ERROR("push", "the radius of a push is its third number and must be greater than 0, not %g",
+              entry->push.values[k]);
     }
     for (uint32_t k = 0; k < entry->set.count; k++) {
         const char *text = entry->set.texts[k];

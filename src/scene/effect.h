@@ -28,7 +28,10 @@
     X(OUTFLOW,        "outflow",         "grains leave through open borders and sinks")         \
     X(SCREEN,         "screen",          "grains that cross a screen are recorded and removed") \
     X(COLLISION_RATE, "collision rate",  "contacts begun are counted for each grain")           \
-    X(SHEAR,          "shear",           "Lees-Edwards borders")
+    X(SHEAR,          "shear",           "Lees-Edwards borders")                                \
+    X(COLLISION_COUNT, "collision counts", "all contacts of each grain, elastic ones apart")    \
+    X(IMPACT,         "impact parameters", "how far off centre grains hit each other")          \
+    X(STRESS,         "collisional stress", "the momentum that contacts carry, whole and by cell")
 
 enum {
 #define X(name, word, doc) EFFECT_BIT_##name,

@@ -1,12 +1,14 @@
 /* place.c - see place.h.  SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/place.h"
 
+#include "scene/place_file.h"
 #include "scene/place_lattice.h"
 #include "scene/place_random.h"
 #include "scene/resolve.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 void place_bounds(const struct scene *scene, const struct placement *placement, double bounds[4])
@@ -60,12 +62,28 @@ static void set_velocities(const struct placer *placer, const struct placement *
     const double factor = warm ? sqrt(2 * placement->temperature * count / square) : 0;
     const struct scene *scene = placer->scene;
     const double middle = 0.5 * (scene->box[1] + scene->box[3]);
+    const double shear_rate = placement->kind == PLACEMENT_FILE ? 0 : scene->shear_rate;
     for (uint32_t i = from; i < g->count; i++) {
-        g->vx[i] = factor * g->vx[i] + placement->velocity[0] + scene->shear_rate
-                                                                * (g->y[i] - middle);
+        g->vx[i] = factor * g->vx[i] + placement->velocity[0] + shear_rate * (g->y[i] - middle);
         g->vy[i] = factor * g->vy[i] + placement->velocity[1];
         g->spin[i] = placement->spin;
     }
+}
+
+/* A file's own velocities, and what the placement says on top of them. */
+static bool add_velocities(const struct placer *placer, const struct placement *placement,
+                           uint32_t number, uint32_t from)
+{
+    const struct placed *g = &placer->grains;
+    const size_t count = g->count - from;
+    double *const arrays[3] = {g->vx, g->vy, g->spin};
+    double *own = calloc(3 * count + 1, sizeof *own);
+    if (!own) return false;
+    for (size_t k = 0; k < 3 * count; k++) own[k] = arrays[k / count][from + k % count];
+    set_velocities(placer, placement, number, from);
+    for (size_t k = 0; k < 3 * count; k++) arrays[k / count][from + k % count] += own[k];
+    free(own);
+    return true;
 }
 
 /* ---- all placements ------------------------------------------------------------------------ */
@@ -115,10 +133,15 @@ bool place_grains(struct scene *scene, struct findings *findings)
         const struct placement *placement = &scene->placements[k];
         const uint32_t from = placer.grains.count, errors = findings->errors;
         const uint32_t species = resolve_species(scene, placement->grains);
-        done = placement->kind == PLACEMENT_RANDOM ? place_random(&placer, placement, k, species)
-                                                   : place_lattice(&placer, placement, k, species);
+        switch ((enum placement_kind)placement->kind) {
+        case PLACEMENT_TRIANGULAR:
+        case PLACEMENT_SQUARE: done = place_lattice(&placer, placement, k, species); break;
+        case PLACEMENT_RANDOM: done = place_random(&placer, placement, k, species); break;
+        case PLACEMENT_FILE: done = place_file(&placer, placement, k, species); break;
+        }
         if (!done) break;
-        set_velocities(&placer, placement, k, from);
+        if (placement->kind != PLACEMENT_FILE) set_velocities(&placer, placement, k, from);
+        else if (!add_velocities(&placer, placement, k, from)) done = false;
         if (findings->errors == errors) tell_missing(&placer, placement, k,
                                                      placer.grains.count - from);
     }

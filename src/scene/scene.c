@@ -34,9 +34,13 @@ struct source_text {
 
 /* ---- the text ------------------------------------------------------------------------------ */
 
+/* "hourglass", "hard/cradle"; with another folder it is built in only if there is such a scene. */
 static bool names_builtin(const char *path)
 {
-    return !strchr(path, '/') && !strstr(path, ".cfg");
+    if (strstr(path, ".cfg")) return false;
+    char name[KEY_TEXT_MAX];
+    snprintf(name, sizeof name, "scenes/%.200s.cfg", path);
+    return !strchr(path, '/') || strncmp(path, "hard/", 5) == 0 || asset_find(name);
 }
 
 /* The built-in scene whose name is closest; NULL if none is close. */
@@ -245,13 +249,12 @@ static bool build_phases(struct scene *scene, const struct scene_request *reques
     return true;
 }
 
-/* A phase begins with the grains of the whole scene and must hold as many. */
+/* A phase begins with the grains of the whole scene. */
 static void share_with_phases(struct scene *scene)
 {
     for (uint32_t k = 1; k < scene->phase_count; k++) {
         struct scene *phase = scene->phases[k];
         phase->placed = scene->placed;
-        phase->count_max = scene->count_max;
         phase->radius_min = fmin(phase->radius_min, scene->radius_min);
         phase->radius_max = fmax(phase->radius_max, scene->radius_max);
         phase->radius_mean = scene->radius_mean;
@@ -281,7 +284,18 @@ struct scene *scene_load(const struct scene_request *request, struct findings *f
             placed = scene->placed.count;
             resolve_radii(scene);
         }
+        if (request->grains_of) {
+            scene->placed = request->grains_of->placed;
+            placed = scene->placed.count;
+            resolve_radii(scene);
+        }
         scene->count_max = resolve_count_max(scene, placed);
+        uint32_t most = scene->count_max;
+        for (uint32_t k = 1; k < scene->phase_count; k++) {     /* one may bring a source */
+            const uint32_t needs = resolve_count_max(scene->phases[k], placed);
+            most = needs > most ? needs : most;
+            scene->phases[k]->count_max = most;
+        }
         share_with_phases(scene);
     }
     free(source.owned);
@@ -318,6 +332,13 @@ const struct scene *scene_at(const struct scene *scene, double t)
     uint32_t phase = 0;
     while (phase + 1 < scene->phase_count && scene->phase_times[phase + 1] <= t) phase++;
     return scene->phases[phase];
+}
+
+effects_t scene_effects(const struct scene *scene)
+{
+    effects_t effects = 0;
+    for (uint32_t p = 0; p < scene->phase_count; p++) effects |= scene->phases[p]->effects;
+    return effects;
 }
 
 double scene_mass(const struct species *species, double radius)

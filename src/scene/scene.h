@@ -38,12 +38,14 @@ struct species {
     int    inertia;             /* enum inertia: I = q m R^2, q = 1/2 or 2/5 */
 };
 
-enum placement_kind { PLACEMENT_TRIANGULAR, PLACEMENT_SQUARE, PLACEMENT_RANDOM };
+enum placement_kind { PLACEMENT_TRIANGULAR, PLACEMENT_SQUARE, PLACEMENT_RANDOM,
+                      PLACEMENT_FILE };
 
 /* One entry of `placements`: grains that are there at the start. */
 struct placement {
     char   grains[KEY_TEXT_MAX];        /* name of the species; "" = the first */
     int    kind;                /* enum placement_kind */
+    char   file[KEY_TEXT_MAX];  /* file: where the grains are listed, beside the scene */
     double region[4];           /* x0 y0 x1 y1; NANs: the box */
     struct key_reals outline;   /* or a polygon, x and y in turn */
     uint32_t count;             /* at most so many; 0: as many as fit */
@@ -101,7 +103,13 @@ struct screen {
 struct sink { double region[4]; };
 
 /* One entry of `phases`: keys that change at a time. */
-struct phase_entry { double time; struct key_texts set; };
+struct phase_entry {
+    double time;
+    struct key_texts set;
+    struct key_reals push;      /* x, y, radius, vx, vy of each push (model/impulse.h), in turn */
+};
+
+enum { PHASE_PUSH = 5 };        /* numbers of one push */
 
 enum color_by { COLOR_SPEED, COLOR_COLLISIONS, COLOR_SPIN, COLOR_SPECIES, COLOR_RADIUS,
                 COLOR_PRESSURE, COLOR_NONE };
@@ -143,17 +151,50 @@ struct measure {
     double range[2];            /* of the colours of maps; NANs: each map its own */
     bool   collisions;          /* count contacts for each grain */
     double collision_window;    /* over which a rate is formed; NAN: the frame interval */
+    bool   collision_counts;    /* contacts of each grain since the start, the elastic ones too */
+    bool   impact_parameters;   /* histogram of b/d */
+    uint32_t impact_bins;
+    bool   stress;              /* what contacts carry, in all and in each cell of the maps' grid */
+    struct key_texts cost;      /* by which `sandreel cost` compares: energy, ... */
 };
 
 /* `output`: what a run writes and how often; 0 = never. */
 struct output {
-    double frames, log, maps, checkpoint;       /* intervals in simulated time */
+    double frames, log, maps, trajectory, checkpoint;   /* intervals in simulated time */
+    double tallies;             /* ... of histograms; 0: one, of the whole run */
     double checkpoint_wall;     /* seconds of wall time */
     bool   dump;                /* grain states at each frame, .npy */
     bool   contacts;            /* with their contacts */
     char   movie[KEY_TEXT_MAX]; /* a movie written while running, "movie.mp4"; "" = none */
     double frame_rate;          /* of movies, 1/s */
     int    png_level;           /* zlib level */
+};
+
+enum hard_end { HARD_REACHED, HARD_REFUSED, HARD_STOPPED };
+
+/* `hard`: what must hold while this scene runs, for the command `stress`. */
+struct hard {
+    struct key_texts models;    /* "MODEL KEY=VALUE ...", one run each; none: it is no case */
+    bool   slow;                /* takes longer than a few seconds */
+    int    ends;                /* enum hard_end */
+    char   because[KEY_TEXT_MAX];       /* words in the reason for a refusal or stop */
+    bool   mass;                /* grains and mass are kept, but for what enters and leaves */
+    double momentum;            /* changes at most by this share of sqrt(2 M K) at the start */
+    double energy_rises;        /* above its least value, as a share of its own scale */
+    double energy_changes;      /* from its first value, as a share of its own scale */
+    double overlap;             /* of grains with grains and walls, as a share of a radius */
+    double within[4];           /* all centres stay in this rectangle */
+    double grains[2];           /* at the end, at least and at most */
+    double energy_left[2];      /* kinetic energy at the end as a share of that at the start */
+    double travel[2];           /* mean way from where they began to the end, in mean diameters */
+    double collisions;          /* at least so many */
+    double since;               /* changes, shares and ways are measured from this time on */
+    double work;                /* at most so many steps, events or ticks */
+    double seconds;             /* of wall time, after which it has failed */
+    uint32_t looks;             /* how often everything is compared on the way */
+    struct key_texts agrees_with;       /* keys of a second run that must end alike */
+    double positions;           /* may differ at most by so many mean diameters (box to box) */
+    double energies;            /* kinetic ones may differ at most by this share */
 };
 
 /* Grains at the start, placed once; every model begins from the same ones. */
@@ -192,6 +233,7 @@ struct scene {
     struct view    view;
     struct measure measure;
     struct output  output;
+    struct hard    hard;
 
     /* Derived: */
     effects_t effects;
@@ -218,6 +260,8 @@ struct scene_request {
     const struct key_group *const *groups;      /* the models' settings */
     uint32_t    group_count;
     bool        place;          /* also place the grains (dense packings take time) */
+    const struct scene *grains_of;      /* or take over the grains that this scene has placed; it
+                                         * must outlive the new one.  NULL: none */
 };
 
 /* Reads, overrides, resolves, checks and places.  NULL if anything is wrong: then `findings` holds
@@ -237,6 +281,9 @@ bool scene_write(const struct scene *scene, const char *path, struct error *erro
 
 /* The scene in force at time t (phases). */
 const struct scene *scene_at(const struct scene *scene, double t);
+
+/* What any phase calls for. */
+effects_t scene_effects(const struct scene *scene);
 
 /* Mass and moment of inertia of a grain: m = density pi R^2, I = q m R^2. */
 double scene_mass(const struct species *species, double radius);

@@ -155,6 +155,15 @@ static bool collision_rate(const struct scene *scene, struct scene_reason *reaso
     return off(reason, "neither measure.collisions nor view.color asks for it");
 }
 
+static bool measured(const struct scene *scene, struct scene_reason *reason, const char *key,
+                     bool asked)
+{
+    if (asked) return on(scene, reason, key, "%s is true", key);
+    char why[80];
+    snprintf(why, sizeof why, "%s is false", key);
+    return off(reason, why);
+}
+
 static bool counted(const struct scene *scene, struct scene_reason *reason, const char *list,
                     uint32_t count)
 {
@@ -189,6 +198,14 @@ static bool derive(const struct scene *scene, uint32_t bit, struct scene_reason 
     case EFFECT_BIT_OUTFLOW:      return outflow(scene, reason);
     case EFFECT_BIT_SCREEN:       return counted(scene, reason, "screens", scene->screen_count);
     case EFFECT_BIT_COLLISION_RATE: return collision_rate(scene, reason);
+    case EFFECT_BIT_COLLISION_COUNT:
+        return measured(scene, reason, "measure.collision_counts",
+                        scene->measure.collision_counts);
+    case EFFECT_BIT_IMPACT:
+        return measured(scene, reason, "measure.impact_parameters",
+                        scene->measure.impact_parameters);
+    case EFFECT_BIT_STRESS:
+        return measured(scene, reason, "measure.stress", scene->measure.stress);
     case EFFECT_BIT_SHEAR:
         return scene->shear_rate != 0 ? on(scene, reason, "shear_rate", "shear_rate = %g",
                                            scene->shear_rate)

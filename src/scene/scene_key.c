@@ -77,7 +77,10 @@ static const struct key species_keys[] = {
 
 static const struct key placement_keys[] = {
     TEXT(placement, grains, "", NULL, "name of the species; absent: the first"),
-    CHOICE(placement, kind, "triangular", "triangular|square|random", "how the grains lie"),
+    CHOICE(placement, kind, "triangular", "triangular|square|random|file",
+           "how the grains lie"),
+    TEXT(placement, file, "", NULL,
+         "file: CSV, LAMMPS dump or data file with the grains, looked for beside the scene"),
     BOX(placement, region, "nan", "where: a rectangle; absent: the box"),
     ROW(placement, outline, KEY_POINTS, "", -FAR, FAR, "length", NULL, "or where: a polygon"),
     COUNT(placement, count, "0", COUNT_HIGH, "at most so many, from below; 0: as many as fit"),
@@ -148,6 +151,8 @@ static const struct key sink_keys[] = {
 static const struct key phase_keys[] = {
     REAL(phase_entry, time, NULL, KEY_POSITIVE, FAR, "time", "when it begins"),
     TEXTS(phase_entry, set, "what changes, as \"KEY=VALUE\"; it stays for later phases"),
+    ROW(phase_entry, push, KEY_REALS, "", -FAR, FAR, "", NULL,
+        "x, y, radius, vx, vy: grains around a point gain a velocity; five more for another push"),
 };
 
 static const struct key view_keys[] = {
@@ -193,12 +198,24 @@ static const struct key measure_keys[] = {
     BOOL(measure, collisions, "false", "count the contacts of each grain"),
     REAL(measure, collision_window, "nan", KEY_POSITIVE, FAR, "time",
          "over which a rate is formed; absent: the time between frames"),
+    BOOL(measure, collision_counts, "false",
+         "contacts begun by each grain, elastic ones apart: collisions.csv, and C/N in log.csv"),
+    BOOL(measure, impact_parameters, "false", "how far off centre grains hit: impact.csv"),
+    COUNT(measure, impact_bins, "50", 10000, "of the impact parameter, over 0 to 1"),
+    BOOL(measure, stress, "false",
+         "the stress that collisions carry and the kinetic one: in log.csv, and as maps"),
+    TEXTS(measure, cost, "what `sandreel cost` compares: energy, collisions, discharge, force, "
+          "density, height; absent: what suits the scene"),
 };
 
 static const struct key output_keys[] = {
     REAL(output, frames, "0", 0, FAR, "time", "between pictures; 0: none"),
     REAL(output, log, "0", 0, FAR, "time", "between rows of log.csv; 0: none"),
     REAL(output, maps, "0", 0, FAR, "time", "between maps; 0: none"),
+    REAL(output, trajectory, "0", 0, FAR, "time",
+         "between frames of trajectory.h5 (H5MD, compressed); 0: none"),
+    REAL(output, tallies, "0", 0, FAR, "time",
+         "between histograms in impact.csv and collisions.csv; 0: one, of the whole run"),
     REAL(output, checkpoint, "0", 0, FAR, "time", "between checkpoints; 0: none"),
     REAL(output, checkpoint_wall, "600", 0, FAR, "s of wall time", "between checkpoints; 0: none"),
     BOOL(output, dump, "false", "keep the grains' states at each frame"),
@@ -207,6 +224,41 @@ static const struct key output_keys[] = {
     REAL(output, frame_rate, "25", 1, 240, "1/s", "of movies"),
     {"png_level", KEY_COUNT, offsetof(struct output, png_level), "1", 0, 9, "1", NULL,
      "effort of compression"},
+};
+
+static const struct key hard_keys[] = {
+    TEXTS(hard, models, "runs to make, each \"MODEL KEY=VALUE ...\"; none: it is no hard case"),
+    BOOL(hard, slow, "false", "takes longer than a few seconds"),
+    CHOICE(hard, ends, "reached", "reached|refused|stopped", "how the run must end"),
+    TEXT(hard, because, "", NULL, "words that the reason of a refusal or stop must hold"),
+    BOOL(hard, mass, "true", "grains and mass are kept, but for what enters and leaves"),
+    REAL(hard, momentum, "nan", 0, FAR, "1",
+         "it changes at most by this share of sqrt(2 M K), K: kinetic energy at the start"),
+    REAL(hard, energy_rises, "nan", 0, FAR, "1",
+         "the sum of energies rises at most by this share of what has been in motion"),
+    REAL(hard, energy_changes, "nan", 0, FAR, "1",
+         "the sum of energies differs from its first value at most by this share"),
+    REAL(hard, overlap, "nan", 0, 2, "1",
+         "largest overlap with a grain or a wall, as a share of the smaller radius"),
+    BOX(hard, within, "nan", "all centres stay in this rectangle; absent: no further than a "
+        "radius outside of solid borders"),
+    ROW(hard, grains, KEY_RANGE, "nan", 0, FAR, "1", NULL, "how many there are at the end"),
+    ROW(hard, energy_left, KEY_RANGE, "nan", 0, FAR, "1", NULL,
+        "kinetic energy at the end as a share of that at the start"),
+    ROW(hard, travel, KEY_RANGE, "nan", 0, FAR, "1", NULL,
+        "mean way of a grain from its start to its end, in mean diameters"),
+    REAL(hard, collisions, "0", 0, FAR, "1", "so many must happen"),
+    REAL(hard, since, "0", 0, FAR, "time",
+         "changes, shares and ways are measured from here on"),
+    REAL(hard, work, "nan", KEY_POSITIVE, FAR, "1", "at most so many steps, events or ticks"),
+    REAL(hard, seconds, "120", KEY_POSITIVE, FAR, "s of wall time", "after these it has failed"),
+    {"looks", KEY_COUNT, offsetof(struct hard, looks), "20", 1, 1000000, "1", NULL,
+     "how often everything is compared on the way"},
+    TEXTS(hard, agrees_with, "\"KEY=VALUE\" of a second run that must end alike"),
+    REAL(hard, positions, "nan", 0, FAR, "1",
+         "of the two runs may differ by so many mean diameters, measured from box to box"),
+    REAL(hard, energies, "nan", 0, FAR, "1",
+         "kinetic ones of the two runs may differ by this share"),
 };
 
 const struct key_group scene_key_top = GROUP(scene, "", top_keys, "keys outside of any group");
@@ -224,7 +276,9 @@ static const struct key_group
     phase_group = GROUP(phase_entry, "phases", phase_keys, "keys that change at a time"),
     view_group = GROUP(view, "view", view_keys, "how frames look"),
     measure_group = GROUP(measure, "measure", measure_keys, "maps, and what is gathered"),
-    output_group = GROUP(output, "output", output_keys, "what a run writes, and how often");
+    output_group = GROUP(output, "output", output_keys, "what a run writes, and how often"),
+    hard_group = GROUP(hard, "hard", hard_keys,
+                         "what must hold while it runs, tried by `sandreel stress`");
 
 #define LIST(group, array, counter) \
     {&group, true, offsetof(struct scene, array), offsetof(struct scene, counter)}
@@ -242,6 +296,7 @@ const struct scene_section scene_key_sections[SCENE_SECTIONS] = {
     SINGLE(view_group, view),
     SINGLE(measure_group, measure),
     SINGLE(output_group, output),
+    SINGLE(hard_group, hard),
 };
 
 const struct key_group *scene_key_group(uint32_t index)

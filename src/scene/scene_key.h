@@ -12,7 +12,7 @@ struct scene_section {
     size_t count_offset;        /* lists: of the uint32_t that counts them */
 };
 
-enum { SCENE_SECTIONS = 11 };
+enum { SCENE_SECTIONS = 12 };
 
 extern const struct key_group scene_key_top;                    /* keys outside of any group */
 extern const struct scene_section scene_key_sections[SCENE_SECTIONS];

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "scene/scene.h"
 #include "scene/scene_key.h"
+#include "scene/scene_value.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -138,8 +139,7 @@ static void write_group(FILE *out, const struct key_group *group, const void *ta
 
 /* ---- phases: what a model chose for one of them is written with it ------------------------- */
 
-/* The value as text; NULL if it cannot be written.  The caller frees. */
-static char *value_text(const struct key *key, const void *at)
+char *scene_write_value(const struct key *key, const void *at)
 {
     char *text = NULL;
     size_t size;
@@ -173,8 +173,8 @@ static void write_changes(FILE *out, const struct key_group *group, const char *
         const struct key *key = &group->keys[k];
         char path[200], line[KEY_TEXT_MAX];
         snprintf(path, sizeof path, "%s.%s", prefix, key->name);
-        char *old = value_text(key, (const char *)before + key->offset);
-        char *value = value_text(key, (const char *)now + key->offset);
+        char *old = scene_write_value(key, (const char *)before + key->offset);
+        char *value = scene_write_value(key, (const char *)now + key->offset);
         if (value && (!old || strcmp(old, value) != 0) && !sets_key(set, path)) {
             snprintf(line, sizeof line, "%s=%s", path, value);
             if (!*first) fputs(", ", out);
@@ -198,6 +198,10 @@ static void write_phase(FILE *out, const struct scene *scene, uint32_t index)
         write_text(out, entry->set.texts[k]);
     }
     bool first = entry->set.count == 0;
+    if (now->count_max != before->count_max && !sets_key(&entry->set, "count_max")) {
+        fprintf(out, "%s\"count_max=%u\"", first ? "" : ", ", now->count_max);
+        first = false;
+    }
     for (uint32_t k = 0; k < before->species_count && k < now->species_count; k++) {
         char prefix[40];
         snprintf(prefix, sizeof prefix, "grains.[%u]", k);
@@ -209,6 +213,10 @@ static void write_phase(FILE *out, const struct scene *scene, uint32_t index)
                       before->settings[g], now->settings[g], &entry->set, &first);
     }
     fputs(");\n", out);
+    if (entry->push.count == 0) return;
+    fputs("        push = ", out);
+    write_numbers(out, entry->push.values, entry->push.count);
+    fputs(";\n", out);
 }
 
 static void write_list(FILE *out, const struct scene_section *section, const struct scene *scene)

@@ -155,6 +155,21 @@ static void archive_origin(struct dsmc *dsmc, struct archive *archive)
     }
 }
 
+/* A resting particle that is pushed moves again; the next step finds out how far. */
+static void dsmc_push(void *state, const struct impulse *impulse)
+{
+    struct dsmc *dsmc = state;
+    const double *box = dsmc->scene->box;
+    for (uint32_t i = 0; i < dsmc->count; i++) {
+        struct dsmc_grain *g = &dsmc->grains[i];
+        const double share = impulse_share(impulse, box[0] + (double)g->x, box[1] + (double)g->y);
+        if (share == 0) continue;
+        g->vx += (float)(share * impulse->vx);
+        g->vy += (float)(share * impulse->vy);
+        dsmc->tags[i] &= DSMC_NAME;
+    }
+}
+
 static void dsmc_archive(void *state, struct archive *archive)
 {
     struct dsmc *dsmc = state;
@@ -168,7 +183,7 @@ static void dsmc_archive(void *state, struct archive *archive)
     stepping_archive(archive, "dsmc", dsmc->dt,
                      (struct stepping_clock){&dsmc->epoch, &dsmc->steps, &dsmc->steps_here});
     archive_origin(dsmc, archive);
-    archive_array(archive, "dsmc.cursors", dsmc->cursors, dsmc->scene->source_count);
+    source_archive(dsmc->scene, dsmc->cursors, archive);
     uint64_t *const totals[] = {&dsmc->collisions, &dsmc->rejected, &dsmc->tangential_count,
                                 &dsmc->grains_in, &dsmc->grains_out};
     const char *const names[] = {"dsmc.collisions", "dsmc.rejected", "dsmc.tangential",
@@ -216,6 +231,7 @@ const struct model model_dsmc = {
     .destroy  = dsmc_destroy,
     .advance  = dsmc_advance,
     .observe  = dsmc_look_observe,
+    .push     = dsmc_push,
     .archive  = dsmc_archive,
     .count    = dsmc_look_count,
     .tally    = dsmc_tally,

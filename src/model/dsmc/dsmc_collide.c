@@ -5,25 +5,29 @@
  * In a cell of n grains M = n (n - 1) d chi v dt / V pairs are candidates (000 eq. 1, 001 eq. 15
  * with sigma = 2d), rounded by chance so that the mean is exact, and each collides with probability
  * g / v, g its relative speed: 000 (2) and 001 (16) print the opposite.  For v any bound on g will
- * do.  Here it is sqrt(2 sum |v_k - mean|^2) of the cell's own grains: |a - b|^2 <= 2 (a^2 + b^2),
- * exact for a pair, found in one pass, and no collision inside the cell can break it.
+ * do.  Here it is the diagonal of the smallest box around the velocities of the cell's own grains:
+ * exact for a pair, and found in one pass.
  *
- * The local form (dense, hsmc) takes chi from the 5 x 5 cells around, and scales M so that those
- * cells have as many pairs together as a uniform gas of their density would: with one grain a cell
- * the pairs met would otherwise be too many or too few wherever grains keep apart or cluster.
+ * A block of cells goes in three passes: the bounds, then the numbers of candidates, then the
+ * candidates themselves, some hundred at a time, of which everything that does not depend on
+ * velocities is worked out before the first of them collides.
  */
 #include "model/dsmc/dsmc_collide.h"
 
+#include "model/dsmc/dsmc_crowd.h"
+#include "model/dsmc/dsmc_vector.h"
 #include "model/dsmc/dsmc_walls.h"
 #include "model/dsmc/dsmc_words.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { LOCAL = 1, DISPLACE = 2, ROUGH = 4, KERNELS = 8 };
+enum { DISPLACE = 1, ROUGH = 2, NOTED = 4, KERNELS = 8 };
 
 enum {
-    BATCH = 512,                /* candidates whose random words are drawn at a time */
+    BATCH = 512,                /* candidates that are worked out at a time */
+    FEW = 4, MANY = 16,         /* grains of a cell that are looked at without asking how many */
+    SPARSE = 3,                 /* grains a cell on average up to which FEW is the better guess */
     PER_GRAIN_MAX = 64          /* candidates a grain and step; in a collapse there is no limit */
 };
 
@@ -35,198 +39,140 @@ struct block {
     struct dsmc *dsmc;
     struct dsmc_words words;
     uint32_t number;
-    uint32_t row, x0, x1;       /* cells x0 .. x1 - 1 of that row */
-    uint32_t cell;              /* number of the first */
-    float    factor[DSMC_BLOCK];        /* chi, pair factor and 1 / volume of each cell */
+    struct dsmc_crowd crowd;
+    uint32_t cell, cells;       /* number of the first, how many */
+    float    width[DSMC_BLOCK], height[DSMC_BLOCK];     /* of the box around a cell's velocities */
     float    bound2[DSMC_BLOCK];        /* square of the bound on relative speeds */
     uint32_t pairs[DSMC_BLOCK];         /* candidates */
     uint64_t collisions, rejected, tangential;
 };
 
-static float volume(const struct dsmc_axis *axis, uint32_t k)
-{
-    return k == 0 ? axis->first : k == axis->cells - 1 ? axis->last : 1;
-}
-
-/* ---- how crowded ---------------------------------------------------------------------------- */
-
-enum { WIDTH = DSMC_BLOCK + 2 * DSMC_HOOD };
-
-struct hood { float grains[WIDTH], pairs[WIDTH], volume[WIDTH]; };      /* by column of cells */
-
-static int reach_of(const struct dsmc_axis *axis)
-{
-    return axis->cells >= 2 * DSMC_HOOD + 1 ? DSMC_HOOD : ((int)axis->cells - 1) / 2;
-}
-
-/* The cell `step` beyond k; false if the grid ends before. */
-static bool neighbour(const struct dsmc_axis *axis, uint32_t k, int step, uint32_t *out)
-{
-    const int64_t at = (int64_t)k + step, cells = axis->cells;
-    if (!axis->wraps && (at < 0 || at >= cells)) return false;
-    *out = (uint32_t)(at < 0 ? at + cells : at >= cells ? at - cells : at);
-    return true;
-}
-
-/* Adds the cells of one row of that height; column 0 is `reach` cells before the block. */
-FORCE_INLINE void add_row(const struct block *block, uint32_t y, float height, struct hood *sum)
-{
-    const struct dsmc_axis *ax = &block->dsmc->ax;
-    const uint32_t *restrict row = &block->dsmc->first[(size_t)y * ax->cells];
-    const int reach = reach_of(ax), columns = (int)(block->x1 - block->x0) + 2 * reach;
-    const int begin = (int)block->x0 - reach, inner = begin < 0 ? -begin : 0;
-    const int end = begin + columns > (int)ax->cells ? (int)ax->cells - begin : columns;
-    const float weight = 1 / height;
-    for (int k = inner; k < end; k++) {
-        const float n = (float)(int32_t)(row[begin + k + 1] - row[begin + k]);
-        sum->grains[k] += n;
-        sum->pairs[k] += weight * n * (n - 1);
-        sum->volume[k] += height;
-    }
-    for (int k = 0; k < columns; k++) {
-        if (k == inner) k = end;                                /* beyond the grid's sides */
-        uint32_t x;
-        if (k >= columns || !neighbour(ax, block->x0, k - reach, &x)) continue;
-        const float n = (float)(int32_t)(row[x + 1] - row[x]);
-        sum->grains[k] += n;
-        sum->pairs[k] += weight * n * (n - 1);
-        sum->volume[k] += height;
-    }
-}
-
-/* Border cells of a grid that does not wrap are wider or narrower than the others. */
-static void scale_borders(const struct block *block, struct hood *sum)
-{
-    const struct dsmc_axis *ax = &block->dsmc->ax;
-    const int64_t at[2] = {0, ax->cells - 1}, begin = (int64_t)block->x0 - reach_of(ax);
-    if (ax->wraps) return;
-    for (int side = 0; side < 2; side++) {
-        const int64_t k = at[side] - begin;
-        if (k < 0 || k >= WIDTH || (side == 1 && at[1] == at[0])) continue;
-        const float width = volume(ax, (uint32_t)at[side]);
-        sum->pairs[k] /= width;
-        sum->volume[k] *= width;
-    }
-}
-
-FORCE_INLINE void find_local_factors(struct block *block)
-{
-    const struct dsmc *dsmc = block->dsmc;
-    const int reach = reach_of(&dsmc->ax), rows = reach_of(&dsmc->ay);
-    const int count = (int)(block->x1 - block->x0);
-    struct hood columns, sums;
-    memset(&columns, 0, sizeof columns);
-    memset(&sums, 0, sizeof sums);
-    for (int step = -rows; step <= rows; step++) {
-        uint32_t y;
-        if (!neighbour(&dsmc->ay, block->row, step, &y)) continue;
-        add_row(block, y, volume(&dsmc->ay, y), &columns);
-    }
-    scale_borders(block, &columns);
-    for (int o = 0; o <= 2 * reach; o++) {
-        for (int k = 0; k < count; k++) {
-            sums.grains[k] += columns.grains[k + o];
-            sums.pairs[k] += columns.pairs[k + o];
-            sums.volume[k] += columns.volume[k + o];
-        }
-    }
-    const float area = (float)(M_PI * dsmc->radius * dsmc->radius / dsmc->settings.weight)
-                     * dsmc->ax.per * dsmc->ay.per;             /* of a particle, in cells */
-    const float height = volume(&dsmc->ay, block->row);
-    const int kind = dsmc->settings.chi;
-    for (int k = 0; k < count; k++) {
-        const float q = sums.grains[k], v = sums.volume[k], pairs = sums.pairs[k];
-        const float chi = dsmc_chi(kind, q * area / v);
-        block->factor[k] = pairs > 0 ? chi * q * (q - 1) / (v * pairs * height) : 0;
-    }
-    if (dsmc->ax.wraps) return;
-    if (block->x0 == 0) block->factor[0] /= volume(&dsmc->ax, 0);
-    const uint32_t last = dsmc->ax.cells - 1;
-    if (block->x1 != last + 1 || last == 0) return;
-    block->factor[last - block->x0] /= volume(&dsmc->ax, last);
-}
-
-/* Without neighbours: the whole box is as crowded on average. */
-static void find_global_factors(struct block *block)
-{
-    const struct dsmc *dsmc = block->dsmc;
-    const double area = M_PI * dsmc->radius * dsmc->radius / dsmc->settings.weight * dsmc->count;
-    const float nu = (float)(area / ((double)dsmc->ax.length * (double)dsmc->ay.length));
-    const float chi = dsmc_chi(dsmc->settings.chi, nu);
-    const float fy = volume(&dsmc->ay, block->row);
-    for (uint32_t k = 0; k < block->x1 - block->x0; k++) {
-        block->factor[k] = chi / (fy * volume(&dsmc->ax, block->x0 + k));
-    }
-}
-
 /* ---- how many candidates -------------------------------------------------------------------- */
 
-typedef float vector4 __attribute__((vector_size(16), may_alias));
+/* After a collision two grains may differ by more than any two before.  The bound of three or more
+ * is taken 10 % higher, so that hardly any pair exceeds it; one that does collides for certain. */
+static const float reserve2 = 1.2f;
 
-/* n sum |v_k|^2 - |sum v_k|^2 = n sum |v_k - mean|^2; velocities count from the first grain's, so
- * that a fast stream does not cost digits.  Two sums at a time, because each addition waits for
- * the one before. */
-FORCE_INLINE float spread_of(const struct dsmc_grain *grains, uint32_t n)
+FORCE_INLINE void widen(const struct dsmc_grain *pair, vector8 *low, vector8 *high)
 {
-    const vector4 *records = (const vector4 *)(const void *)grains;
-    const vector4 origin = records[0];
-    vector4 sum = {0}, sum2 = {0}, squares = {0}, squares2 = {0};
-    uint32_t k = 1;
-    for (; k + 1 < n; k += 2) {
-        const vector4 v = records[k] - origin, w = records[k + 1] - origin;
-        sum += v;
-        sum2 += w;
-        squares += v * v;
-        squares2 += w * w;
-    }
-    if (k < n) {
-        const vector4 v = records[k] - origin;
-        sum += v;
-        squares += v * v;
-    }
-    sum += sum2;
-    squares += squares2;
-    return (float)n * (squares[2] + squares[3]) - (sum[2] * sum[2] + sum[3] * sum[3]);
+    const vector8 v = *(const vector8 *)(const void *)pair;
+    const mask8 below = v < *low, above = v > *high;
+    *low = (vector8)(((mask8)v & below) | ((mask8)*low & ~below));
+    *high = (vector8)(((mask8)v & above) | ((mask8)*high & ~above));
 }
 
-/* The bound of each cell, still times n / 2; false if nothing moves against anything here. */
-FORCE_INLINE bool find_spreads(struct block *block)
+/* The boxes around the velocities of each cell.  `often` grains are looked at without a branch: a
+ * grain may be looked at twice, and cells of less than two read a neighbour's, in vain. */
+FORCE_INLINE void find_boxes(struct block *block, uint32_t often)
 {
     const struct dsmc *dsmc = block->dsmc;
-    const uint32_t *first = &dsmc->first[block->cell], count = block->x1 - block->x0;
+    const uint32_t *first = &dsmc->first[block->cell];
     const struct dsmc_grain *grains = dsmc->grains;
-    float most = 0;
-    for (uint32_t k = 0; k < count; k++) {
-        const uint32_t n = first[k + 1] - first[k];
-        const float spread = n < 2 ? 0 : spread_of(&grains[first[k]], n);
-        block->bound2[k] = spread;
-        most = spread > most ? spread : most;
+    const uint32_t end = first[block->cells] - 2;       /* no pair begins after this */
+    for (uint32_t k = 0; k < block->cells; k++) {
+        const uint32_t start = first[k] < end ? first[k] : end;
+        const uint32_t n = first[k + 1] - first[k], most = n > 2 ? n - 2 : 0;
+        vector8 low = *(const vector8 *)(const void *)&grains[start], high = low;
+#pragma GCC unroll 8
+        for (uint32_t i = 2; i < often; i += 2) {
+            widen(&grains[start + (i < most ? i : most)], &low, &high);
+        }
+        for (uint32_t i = often; i < n; i += 2) {
+            widen(&grains[start + (i < most ? i : most)], &low, &high);
+        }
+        block->width[k] = (high[2] > high[6] ? high[2] : high[6])
+                        - (low[2] < low[6] ? low[2] : low[6]);
+        block->height[k] = (high[3] > high[7] ? high[3] : high[7])
+                         - (low[3] < low[7] ? low[3] : low[7]);
     }
-    return most > 0;
 }
 
 /* The square of the bound and the number of candidates; no branches, several cells at a time. */
 FORCE_INLINE void find_pairs(struct block *block)
 {
     const struct dsmc *dsmc = block->dsmc;
-    const uint32_t count = block->x1 - block->x0, *first = &dsmc->first[block->cell];
+    const uint32_t count = block->cells, *first = &dsmc->first[block->cell];
     const float rate = dsmc->rate, printed2 = printed_speed * printed_speed;
     uint32_t chance[DSMC_BLOCK];
+    const float *width = block->width, *height = block->height, *factor = block->crowd.factor;
     float *bound2 = block->bound2;
-    const float *factor = block->factor;
     uint32_t *pairs = block->pairs;
     dsmc_words_fill(&block->words, chance, count);
     for (uint32_t k = 0; k < count; k++) {
         const float n = (float)(int32_t)(first[k + 1] - first[k]);
-        const float spread = bound2[k] > 0 ? bound2[k] : 0;
-        const float own = 2.00002f * spread / (n > 1 ? n : 1);
-        const float bound = printed2 > 0 ? printed2 : own;
+        const float own = width[k] * width[k] + height[k] * height[k];
+        const float bound = printed2 > 0 ? printed2 : n > 2 ? reserve2 * own : own;
         const float mean = rate * factor[k] * n * (n - 1) * sqrtf(bound);
         const float most = (float)PER_GRAIN_MAX * n;
         const float u = (float)(int32_t)(chance[k] >> 8) * 0x1p-24f;
         const float wanted = (mean < most ? mean : most) + u;
         bound2[k] = bound;
         pairs[k] = (uint32_t)(int32_t)(n > 1 ? wanted : 0);
+    }
+}
+
+/* ---- candidates ----------------------------------------------------------------------------- */
+
+enum { EIGHT = 8 };
+
+struct batch {
+    uint32_t count;
+    uint32_t k[BATCH + EIGHT];          /* which cell of the block */
+    uint32_t i[BATCH], j[BATCH];        /* which grains */
+    float least[BATCH];         /* they collide if the square of their relative speed is more */
+    float along[BATCH], across[BATCH];  /* share of the relative velocity, and of it turned left */
+};
+
+/* The cells of the next candidates, from cell `k` on; returns the cell to go on with. */
+FORCE_INLINE uint32_t take_cells(struct block *block, uint32_t k, struct batch *batch)
+{
+    uint32_t count = 0;
+    while (k < block->cells) {
+        const uint32_t room = BATCH - count, wanted = block->pairs[k];
+        const uint32_t n = wanted < room ? wanted : room;
+        for (int e = 0; e < EIGHT; e++) batch->k[count + (uint32_t)e] = k;      /* mostly enough */
+        for (uint32_t e = EIGHT; e < n; e++) batch->k[count + e] = k;
+        count += n;
+        if (n < wanted) {
+            block->pairs[k] -= n;
+            break;
+        }
+        k++;
+    }
+    batch->count = count;
+    return k;
+}
+
+/* All that is known of the candidates before anything collides.  The impact parameter b = sin(angle
+ * between g and the normal) is uniform in [-1, 1) in two dimensions; the normal part of g,
+ * (g n) n = g (1 - b^2) + (g turned left) b sqrt(1 - b^2). */
+FORCE_INLINE void work_out(struct block *block, struct batch *batch)
+{
+    const uint32_t *first = &block->dsmc->first[block->cell], count = batch->count;
+    uint32_t words[3 * BATCH], start[BATCH], n[BATCH];
+    float bound2[BATCH];
+    const uint32_t made = (count + DSMC_LANES - 1) / DSMC_LANES * DSMC_LANES;
+    dsmc_words_fill(&block->words, words, 3 * made);
+    for (uint32_t c = 0; c < count; c++) {
+        const uint32_t k = batch->k[c];
+        start[c] = first[k];
+        n[c] = first[k + 1] - first[k];
+        bound2[c] = block->bound2[k];
+    }
+    for (uint32_t c = 0; c < count; c++) {
+        const uint32_t word = words[c];
+        const uint32_t i = (uint32_t)((uint64_t)(word & 0xffff) * n[c] >> 16);
+        const uint32_t j = (uint32_t)((uint64_t)(word >> 16) * (n[c] - 1) >> 16);
+        batch->i[c] = start[c] + i;
+        batch->j[c] = start[c] + j + (j >= i);
+    }
+    for (uint32_t c = 0; c < count; c++) {
+        const float u = (float)(int32_t)(words[made + c] >> 8) * 0x1p-24f;
+        const float b = (float)(int32_t)(words[2 * made + c] >> 8) * 0x1p-23f - 1;
+        const float c2 = 1 - b * b;
+        batch->least[c] = u * u * bound2[c];
+        batch->along[c] = c2;
+        batch->across[c] = b * sqrtf(c2);
     }
 }
 
@@ -284,15 +230,11 @@ static void rub(struct dsmc *dsmc, uint32_t i, uint32_t j, float nx, float ny, f
     dsmc->spins[j] -= blow / q;
 }
 
-/* The impact parameter b = sin(angle between g and the normal) is uniform in [-1, 1) in two
- * dimensions; the normal part of g, (g n) n = g (1 - b^2) + (g turned left) b sqrt(1 - b^2). */
-FORCE_INLINE void collide_pair(struct block *block, uint32_t i, uint32_t j, float gx, float gy,
-                               float b, unsigned flags)
+/* (nx, ny): the normal part of their relative velocity. */
+FORCE_INLINE void collide_pair(struct dsmc *dsmc, uint32_t i, uint32_t j, float nx, float ny,
+                               float gx, float gy, unsigned flags)
 {
-    struct dsmc *dsmc = block->dsmc;
     struct dsmc_grain *p = &dsmc->grains[i], *q = &dsmc->grains[j];
-    const float c2 = 1 - b * b, cs = b * sqrtf(c2);
-    const float nx = gx * c2 - gy * cs, ny = gy * c2 + gx * cs;         /* (g n) n */
     const float f = dsmc->half_impulse;
     p->vx -= f * nx;
     p->vy -= f * ny;
@@ -309,66 +251,71 @@ FORCE_INLINE void collide_pair(struct block *block, uint32_t i, uint32_t j, floa
             displace(dsmc, q, way * ex, way * ey);
         }
     }
-    if (dsmc->contacts || dsmc->full) note(dsmc, i, j);
+    if (flags & NOTED) note(dsmc, i, j);
 }
 
 /* ---- a block of cells ----------------------------------------------------------------------- */
 
-/* Does the candidate collide?  g / v > U, without the root. */
-FORCE_INLINE bool accepted(float g2, float bound2, float u)
+/* Kicks only: every candidate is worked out alike, and one that does not collide gets nothing. */
+FORCE_INLINE uint32_t kick_all(struct dsmc *dsmc, const struct batch *batch)
 {
-    if (__builtin_expect(printed_speed > 0, 0)) return g2 < u * u * bound2;
-    return g2 > u * u * bound2;
+    vector4 *grains = (vector4 *)(void *)dsmc->grains;
+    const float f = dsmc->half_impulse;
+    const vector4 along = {0, 0, f, f}, across = {0, 0, -f, f};
+    uint32_t collisions = 0;
+    for (uint32_t c = 0; c < batch->count; c++) {
+        vector4 *p = &grains[batch->i[c]], *q = &grains[batch->j[c]];
+        const vector4 a = *p, b = *q, g = a - b;
+        const float g2 = g[2] * g[2] + g[3] * g[3];
+        const bool collides = g2 > batch->least[c];
+        const float here = collides ? 1 : 0;
+        const float s = here * batch->along[c], t = here * batch->across[c];
+        const vector4 turned = {0, 0, g[3], g[2]};
+        const vector4 kick = g * (along * s) + turned * (across * t);
+        *p = a - kick;
+        *q = b + kick;
+        collisions += collides;
+    }
+    return collisions;
 }
 
-FORCE_INLINE void collide_cells(struct block *block, unsigned flags)
+FORCE_INLINE uint32_t collide_all(struct dsmc *dsmc, const struct batch *batch, unsigned flags)
 {
-    const struct dsmc *dsmc = block->dsmc;
-    const uint32_t *first = &dsmc->first[block->cell];
-    uint32_t words[3 * BATCH], used = BATCH, made = BATCH;
-    uint64_t left = 0;
-    for (uint32_t k = 0; k < block->x1 - block->x0; k++) left += block->pairs[k];
-    for (uint32_t k = 0; k < block->x1 - block->x0; k++) {
-        const uint32_t n = first[k + 1] - first[k], start = first[k];
-        for (uint32_t pair = block->pairs[k]; pair > 0; pair--, used++) {
-            if (used == made) {
-                made = left < BATCH ? ((uint32_t)left + 7) / 8 * 8 : BATCH;
-                dsmc_words_fill(&block->words, words, 3 * made);
-                used = 0;
-            }
-            left--;
-            const uint32_t a = words[used], b = words[made + used];
-            uint32_t i = (uint32_t)((uint64_t)(a & 0xffff) * n >> 16);
-            uint32_t j = (uint32_t)((uint64_t)(a >> 16) * (n - 1) >> 16);
-            j += j >= i;
-            i += start;
-            j += start;
-            const float gx = dsmc->grains[i].vx - dsmc->grains[j].vx;
-            const float gy = dsmc->grains[i].vy - dsmc->grains[j].vy;
-            if (!accepted(gx * gx + gy * gy, block->bound2[k], dsmc_words_unit(b))) {
-                block->rejected++;
-                continue;
-            }
-            block->collisions++;
-            collide_pair(block, i, j, gx, gy, 2 * dsmc_words_unit(words[2 * made + used]) - 1,
-                         flags);
-        }
+    const bool printed = printed_speed > 0;
+    uint32_t collisions = 0;
+    for (uint32_t c = 0; c < batch->count; c++) {
+        const uint32_t i = batch->i[c], j = batch->j[c];
+        const float gx = dsmc->grains[i].vx - dsmc->grains[j].vx;
+        const float gy = dsmc->grains[i].vy - dsmc->grains[j].vy;
+        const float g2 = gx * gx + gy * gy, s = batch->along[c], t = batch->across[c];
+        if (printed ? g2 >= batch->least[c] : g2 <= batch->least[c]) continue;
+        collisions++;
+        collide_pair(dsmc, i, j, gx * s - gy * t, gy * s + gx * t, gx, gy, flags);
     }
+    return collisions;
 }
 
 FORCE_INLINE void collide_block(struct block *block, unsigned flags)
 {
-    if (!find_spreads(block)) return;
-    if (flags & LOCAL) find_local_factors(block);
-    else find_global_factors(block);
-    block->words = dsmc_words_begin(block->dsmc->seed, block->dsmc->steps, block->number);
+    struct dsmc *dsmc = block->dsmc;
+    struct batch batch;
+    if (dsmc->count < SPARSE * (uint64_t)dsmc->cells) find_boxes(block, FEW);
+    else find_boxes(block, MANY);
     find_pairs(block);
-    collide_cells(block, flags);
+    for (uint32_t k = 0; k < block->cells;) {
+        k = take_cells(block, k, &batch);
+        work_out(block, &batch);
+        const bool simple = flags == 0 && !(printed_speed > 0);
+        const uint32_t collisions = simple ? kick_all(dsmc, &batch)
+                                           : collide_all(dsmc, &batch, flags);
+        block->collisions += collisions;
+        block->rejected += batch.count - collisions;
+    }
     if (flags & ROUGH) block->tangential = block->collisions;
 }
 
 /* X(flags): the loops that exist */
-#define LOOPS(X) X(0) X(1) X(3) X(4) X(5) X(7)
+#define LOOPS(X) X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7)
 
 #define X(flags) \
     CLONES static void loop_##flags(struct block *block) { collide_block(block, flags); }
@@ -399,16 +346,23 @@ uint32_t dsmc_collide_cell(const struct dsmc *dsmc, uint32_t block)
 
 void dsmc_collide(struct dsmc *dsmc, uint32_t number, struct dsmc_sums *sums)
 {
-    const int method = dsmc->settings.method;
-    const unsigned flags = (method == DSMC_PLAIN ? 0 : LOCAL)
-                         | (method == DSMC_DENSE ? DISPLACE : 0) | (dsmc->spins ? ROUGH : 0);
+    const unsigned flags = (dsmc->settings.method == DSMC_DENSE ? DISPLACE : 0)
+                         | (dsmc->spins ? ROUGH : 0)
+                         | (dsmc->contacts || dsmc->full ? NOTED : 0);
     struct block block;
+    const uint32_t cell = dsmc_collide_cell(dsmc, number), row = cell / dsmc->ax.cells;
+    const uint32_t x0 = cell % dsmc->ax.cells, wide = dsmc->ax.cells - x0;
     block.dsmc = dsmc;
-    block.number = number;
-    block.cell = dsmc_collide_cell(dsmc, number);
-    block.row = block.cell / dsmc->ax.cells;
-    block.x0 = block.cell % dsmc->ax.cells;
-    block.x1 = block.x0 + DSMC_BLOCK < dsmc->ax.cells ? block.x0 + DSMC_BLOCK : dsmc->ax.cells;
+    block.cell = cell;
+    block.cells = wide < DSMC_BLOCK ? wide : DSMC_BLOCK;
+    if (dsmc->first[cell + block.cells] - dsmc->first[cell] < 2) return;
+    block.crowd.dsmc = dsmc;
+    block.crowd.row = row;
+    block.crowd.x0 = x0;
+    block.crowd.x1 = x0 + block.cells;
+    if (dsmc->settings.method == DSMC_PLAIN) dsmc_crowd_global(&block.crowd);
+    else dsmc_crowd_local(&block.crowd);
+    block.words = dsmc_words_begin(dsmc->seed, dsmc->steps, number);
     block.collisions = block.rejected = block.tangential = 0;
     loops[flags](&block);
     sums->collisions += block.collisions;

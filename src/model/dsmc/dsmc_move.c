@@ -15,6 +15,7 @@
 #include "model/dsmc/dsmc_collide.h"
 #include "model/dsmc/dsmc_flow.h"
 #include "model/dsmc/dsmc_heap.h"
+#include "model/dsmc/dsmc_vector.h"
 #include "model/dsmc/dsmc_walls.h"
 
 #include <math.h>
@@ -27,14 +28,6 @@ enum {
 };
 
 static const uint64_t shift_key = 0x7368696674;         /* "shift": apart from other streams */
-
-typedef float vector4 __attribute__((vector_size(16), may_alias));
-typedef int32_t mask4 __attribute__((vector_size(16)));
-
-/* Two records side by side: one register where the processor has wide ones. */
-typedef float vector8 __attribute__((vector_size(32), aligned(16), may_alias));
-typedef int32_t mask8 __attribute__((vector_size(32)));
-typedef uint64_t words4 __attribute__((vector_size(32)));
 
 /* ---- the grid ------------------------------------------------------------------------------- */
 
@@ -259,13 +252,15 @@ static void fly_block(struct dsmc *dsmc, const struct flight *f, struct run run,
 
 /* ---- sort ----------------------------------------------------------------------------------- */
 
-/* What travels through the record of a grain that has been copied. */
-struct __attribute__((may_alias)) carry {
-    uint32_t place, tag;
-    float    spin;
+/* What travels through the records of grains that have been copied, from the first one of the
+ * thread on: two names a record, or one with what else a grain carries. */
+struct __attribute__((may_alias)) carry { uint32_t place, tag; };
+struct __attribute__((may_alias)) luggage {
+    struct carry carry;
+    float spin;
     struct dsmc_contacts contacts;
 };
-_Static_assert(sizeof(struct carry) == sizeof(struct dsmc_grain), "a carry fits a record");
+_Static_assert(sizeof(struct luggage) == sizeof(struct dsmc_grain), "luggage fits a record");
 
 CLONES static void count(const struct dsmc *dsmc, uint32_t *restrict places, uint32_t first,
                          uint32_t last)
@@ -302,48 +297,66 @@ static void find_places(struct dsmc *dsmc, uint32_t t, uint32_t team, uint32_t *
 #pragma omp barrier
 }
 
+/* Copies n grains, from the first of a share on (`done` before them), and packs what they carry. */
+FORCE_INLINE void copy_grains(const struct dsmc *dsmc, uint32_t first, uint32_t done, uint32_t n,
+                              const uint32_t *restrict place)
+{
+    const vector4 *from = (const vector4 *)(const void *)&dsmc->grains[first + done];
+    vector4 *restrict to = (vector4 *)(void *)dsmc->sorted;
+    const uint32_t *restrict tags = &dsmc->tags[first + done];
+    struct carry *carries = (struct carry *)(void *)&dsmc->grains[first] + done;
+    struct luggage *luggage = (struct luggage *)(void *)&dsmc->grains[first] + done;
+    const bool loaded = dsmc->spins || dsmc->contacts;
+    for (uint32_t k = 0; !loaded && k < n; k++) {
+        to[place[k]] = from[k];
+        carries[k] = (struct carry){place[k], tags[k]};
+    }
+    for (uint32_t k = 0; loaded && k < n; k++) {
+        to[place[k]] = from[k];
+        luggage[k].carry = (struct carry){place[k], tags[k]};
+    }
+    for (uint32_t k = 0; dsmc->spins && k < n; k++) {
+        luggage[k].spin = dsmc->spins[first + done + k];
+    }
+    for (uint32_t k = 0; dsmc->contacts && k < n; k++) {
+        luggage[k].contacts = dsmc->contacts[first + done + k];
+    }
+}
+
 CLONES static void scatter(const struct dsmc *dsmc, uint32_t *restrict places, uint32_t first,
                            uint32_t last)
 {
     const struct finder finder = finder_of(dsmc);
-    vector4 *restrict from = (vector4 *)(void *)dsmc->grains;
-    vector4 *restrict to = (vector4 *)(void *)dsmc->sorted;
-    const uint32_t *restrict tags = dsmc->tags;
-    const float *spins = dsmc->spins;
-    const struct dsmc_contacts *contacts = dsmc->contacts;
+    const vector4 *from = (const vector4 *)(const void *)dsmc->grains;
     uint32_t place[SCATTER];
     for (uint32_t i = first; i < last; i += SCATTER) {
         const uint32_t n = last - i < SCATTER ? last - i : SCATTER;
         uint32_t m = 0;
-        for (; m + 1 < n; m += 2) find_two(&finder, (vector8 *)(void *)&from[i + m], &place[m]);
+        for (; m + 1 < n; m += 2) {
+            find_two(&finder, (const vector8 *)(const void *)&from[i + m], &place[m]);
+        }
         if (m < n) place[m] = find_one(&finder, from[i + m]);
-        for (uint32_t k = 0; k < n; k++) place[k] = places[place[k]]++;
         for (uint32_t k = 0; k < n; k++) {
-            const vector4 p = from[i + k];
-            struct carry *carry = (struct carry *)(void *)&from[i + k];
-            to[place[k]] = p;
-            carry->place = place[k];
-            carry->tag = tags[i + k];
+            place[k] = places[place[k]]++;
+            __builtin_prefetch(&dsmc->sorted[place[k]], 1);
         }
-        for (uint32_t k = 0; spins && k < n; k++) {
-            ((struct carry *)(void *)&from[i + k])->spin = spins[i + k];
-        }
-        for (uint32_t k = 0; contacts && k < n; k++) {
-            ((struct carry *)(void *)&from[i + k])->contacts = contacts[i + k];
-        }
+        copy_grains(dsmc, first, i - first, n, place);
     }
 }
 
 static void deliver(struct dsmc *dsmc, uint32_t first, uint32_t last)
 {
-    const struct carry *carries = (const struct carry *)(const void *)dsmc->grains;
+    const struct carry *carries = (const struct carry *)(const void *)&dsmc->grains[first];
+    const struct luggage *luggage = (const struct luggage *)(const void *)&dsmc->grains[first];
     uint32_t *restrict tags = dsmc->tags;
-    for (uint32_t i = first; i < last; i++) tags[carries[i].place] = carries[i].tag;
-    for (uint32_t i = first; dsmc->spins && i < last; i++) {
-        dsmc->spins[carries[i].place] = carries[i].spin;
-    }
-    for (uint32_t i = first; dsmc->contacts && i < last; i++) {
-        dsmc->contacts[carries[i].place] = carries[i].contacts;
+    const uint32_t n = last - first;
+    const bool loaded = dsmc->spins || dsmc->contacts;
+    for (uint32_t k = 0; !loaded && k < n; k++) tags[carries[k].place] = carries[k].tag;
+    for (uint32_t k = 0; loaded && k < n; k++) {
+        const struct luggage *l = &luggage[k];
+        tags[l->carry.place] = l->carry.tag;
+        if (dsmc->spins) dsmc->spins[l->carry.place] = l->spin;
+        if (dsmc->contacts) dsmc->contacts[l->carry.place] = l->contacts;
     }
 }
 

@@ -6,6 +6,8 @@
 
 #include "model/ed/ed_change.h"
 #include "model/ed/ed_epoch.h"
+#include "model/ed/ed_shear.h"
+#include "model/ed/ed_watch.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -34,7 +36,7 @@ static bool take_arrays(struct ed *ed)
     const effects_t effects = ed->effects;
     const bool sizes = effects & (EFFECT_POLYDISPERSE | EFFECT_MIXTURE);
     const bool spins = effects & (EFFECT_FRICTION | EFFECT_ROTATION);
-    const bool rates = effects & EFFECT_COLLISION_RATE;
+    const bool rates = effects & EFFECT_COLLISION_RATE, counts = effects & EFFECT_COLLISION_COUNT;
     struct arena *arena = &ed->arena;
     return arena_array(arena, &ed->grains, n) && arena_array(arena, &ed->events, n)
         && arena_array(arena, &ed->id, n)
@@ -46,6 +48,8 @@ static bool take_arrays(struct ed *ed)
         && arena_array(arena, &ed->angle, spins ? n : 0)
         && arena_array(arena, &ed->contacts, rates ? n : 0)
         && arena_array(arena, &ed->rate, rates ? n : 0)
+        && arena_array(arena, &ed->begun, counts ? n : 0)
+        && arena_array(arena, &ed->elastic, counts ? n : 0)
         && arena_array(arena, &ed->cursors, ed->scene->source_count)
         && arena_array(arena, &ed->batch, ed->batch_max);
 }
@@ -87,7 +91,7 @@ static uint64_t fingerprint(const struct ed *ed)
     const struct scene *s = ed->scene;
     uint64_t hash = ARCHIVE_HASH_START;
 #define PRINT(value) hash = archive_hash(hash, &(value), sizeof (value))
-    PRINT(s->effects); PRINT(s->box); PRINT(s->gravity); PRINT(s->left); PRINT(s->right);
+    PRINT(s->effects); PRINT(s->shear_rate); PRINT(s->box); PRINT(s->gravity); PRINT(s->left); PRINT(s->right);
     PRINT(s->bottom); PRINT(s->top); PRINT(s->wall_count); PRINT(ed->cells.nx); PRINT(ed->cells.ny);
     PRINT(ed->settings.margin); PRINT(ed->cells.block_count);
     for (uint32_t k = 0; k < s->wall_count; k++) {
@@ -137,6 +141,7 @@ static void start_anew(struct ed *ed)
     struct ed_walls *walls = &ed->walls;
     ed->clock.now = ed_since_epoch(&ed->clock, ed->clock.present);
     ed_epoch_shift(ed);                                 /* still under the gravity before */
+    ed_shear_begin(ed);
     ed->clock.gx = ed->gx;
     ed->clock.gy = ed->gy;
     walls->change = 0;
@@ -199,6 +204,7 @@ static void *ed_create(const struct scene *scene, struct error *error)
         ed_destroy(ed);
         return NULL;
     }
+    ed->watches = ed_watch_wanted(ed);
     place_grains(ed);
     ed->queue.per_time = 1;
     start_anew(ed);
@@ -257,25 +263,17 @@ static enum advance ed_advance(void *state, double t_end, uint64_t budget)
     }
 }
 
-static double into_box(double x, double low, double period, double per_period)
-{
-    return period > 0 ? x - period * floor((x - low) * per_period) : x;
-}
-
 static void ed_observe(const void *state, struct grains *out)
 {
     const struct ed *ed = state;
     const double t = ed_since_epoch(&ed->clock, ed->clock.present);
-    const double *w = out->window, *box = ed->scene->box;
+    const double *w = out->window;
     const bool all = w[0] > w[2];
     out->time = ed->clock.present;
     out->count = out->contact_count = out->missed = 0;
     for (uint32_t i = 0; i < ed->count; i++) {
-        const struct ed_grain *g = &ed->grains[i];
-        const double flown_x = g->x + t * (g->vx + 0.5 * ed->gx * t),
-                     flown_y = g->y + t * (g->vy + 0.5 * ed->gy * t);
-        const double x = into_box(flown_x, box[0], ed->wrap_x, ed->unwrap_x),
-                     y = into_box(flown_y, box[1], ed->wrap_y, ed->unwrap_y);
+        const struct ed_path p = ed_shear_place(ed, i, t);
+        const double x = p.x, y = p.y;
         const double r = ed_radius(ed, i);
         if (!all && (x + r < w[0] || y + r < w[1] || x - r > w[2] || y - r > w[3])) continue;
         if (out->count == out->capacity) {
@@ -286,15 +284,35 @@ static void ed_observe(const void *state, struct grains *out)
         if (out->id) out->id[k] = ed->id[i];
         if (out->x) out->x[k] = x;
         if (out->y) out->y[k] = y;
-        if (out->vx) out->vx[k] = g->vx + ed->gx * t;
-        if (out->vy) out->vy[k] = g->vy + ed->gy * t;
+        if (out->vx) out->vx[k] = p.vx;
+        if (out->vy) out->vy[k] = p.vy;
         if (out->angle) out->angle[k] = ed->spin ? ed->angle[i] + t * ed->spin[i] : 0;
         if (out->spin) out->spin[k] = ed->spin ? ed->spin[i] : 0;
         if (out->radius) out->radius[k] = r;
         if (out->mass) out->mass[k] = ed_mass(ed, i);
         if (out->collision_rate) out->collision_rate[k] = ed->rate ? ed->rate[i] : 0;
+        if (out->collisions) out->collisions[k] = ed->begun ? ed->begun[i] : 0;
+        if (out->collisions_elastic) out->collisions_elastic[k] = ed->elastic ? ed->elastic[i] : 0;
         if (out->species) out->species[k] = (uint16_t)ed_species(ed, i);
     }
+}
+
+static void ed_push(void *state, const struct impulse *impulse)
+{
+    struct ed *ed = state;
+    const double t = ed_since_epoch(&ed->clock, ed->clock.present);
+    for (uint32_t i = 0; i < ed->count; i++) {
+        struct ed_grain *g = &ed->grains[i];
+        const double x = g->x + t * (g->vx + 0.5 * ed->gx * t);
+        const double y = g->y + t * (g->vy + 0.5 * ed->gy * t);
+        const double share = impulse_share(impulse, x, y);
+        if (share == 0) continue;
+        g->vx += share * impulse->vx;           /* as if it had always flown so: ed.h */
+        g->vy += share * impulse->vy;
+        g->x -= share * impulse->vx * t;
+        g->y -= share * impulse->vy * t;
+    }
+    start_anew(ed);
 }
 
 static void ed_archive(void *state, struct archive *archive)
@@ -316,7 +334,9 @@ static void ed_archive(void *state, struct archive *archive)
     archive_array(archive, "ed.angle", ed->angle, ed->count);
     archive_array(archive, "ed.contacts", ed->contacts, ed->count);
     archive_array(archive, "ed.rate", ed->rate, ed->count);
-    archive_array(archive, "ed.cursors", ed->cursors, ed->scene->source_count);
+    archive_array(archive, "ed.begun", ed->begun, ed->count);
+    archive_array(archive, "ed.elastic", ed->elastic, ed->count);
+    source_archive(ed->scene, ed->cursors, archive);
     tally_archive(&ed->tally, archive);
     const bool same = !loads || ed->clock.fingerprint == own;
     if (same) {
@@ -325,6 +345,7 @@ static void ed_archive(void *state, struct archive *archive)
     }
     if (!loads || archive->failed) return;
     ed->fault = (struct fault){0};
+    ed->sheared |= ed->clock.ahead != 0 || ed->clock.shear_speed != 0;
     ed->clock.fingerprint = own;
     if (ed->rate && !had_rates) ed->clock.rate_from = ed->clock.present;
     if (!same) {
@@ -346,8 +367,9 @@ static void ed_count(const void *state, struct counters *out)
     for (uint32_t i = 0; i < ed->count; i++) {
         const struct ed_grain *g = &ed->grains[i];
         const double m = ed_mass(ed, i), r = ed_radius(ed, i);
-        const double x = g->x + t * (g->vx + 0.5 * ed->gx * t), vx = g->vx + ed->gx * t;
+        const double x = g->x + t * (g->vx + 0.5 * ed->gx * t);
         const double y = g->y + t * (g->vy + 0.5 * ed->gy * t), vy = g->vy + ed->gy * t;
+        const double vx = ed->sheared ? ed_shear_place(ed, i, t).vx : g->vx + ed->gx * t;
         out->kinetic_energy += 0.5 * m * (vx * vx + vy * vy);
         out->potential_energy -= m * (ed->gx * x + ed->gy * y);
         out->momentum_x += m * vx;
@@ -387,7 +409,8 @@ const struct model model_ed = {
     .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_ROTATION | EFFECT_FRICTION
               | EFFECT_POLYDISPERSE | EFFECT_MIXTURE | EFFECT_PERIODIC | EFFECT_WALLS
               | EFFECT_MOVING_WALLS | EFFECT_GATES | EFFECT_OBSTACLE | EFFECT_OUTFLOW
-              | EFFECT_INFLOW | EFFECT_SCREEN | EFFECT_COLLISION_RATE,
+              | EFFECT_INFLOW | EFFECT_SCREEN | EFFECT_COLLISION_RATE | EFFECT_COLLISION_COUNT
+              | EFFECT_IMPACT | EFFECT_STRESS | EFFECT_SHEAR,
     .settings = &ed_settings_group,
     .resolve  = ed_settings_resolve,
     .memory   = ed_memory,
@@ -395,6 +418,7 @@ const struct model model_ed = {
     .destroy  = ed_destroy,
     .advance  = ed_advance,
     .observe  = ed_observe,
+    .push     = ed_push,
     .archive  = ed_archive,
     .count    = ed_count,
     .tally    = ed_tally,

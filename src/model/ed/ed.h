@@ -61,6 +61,10 @@ struct ed_clock {
     double   rate_from;         /* scene time at which the window of the collision rate began */
     double   retry;             /* scene time before which waiting grains do not try again */
     uint64_t fingerprint;       /* of what the predictions were made for */
+    double   shear_speed;       /* of the image above (ed_shear.h) */
+    double   ahead;             /* how far it is ahead along x at the epoch */
+    double   slide;             /* when it has slid by a cell, since the epoch */
+    int64_t  ahead_cells;       /* until then it is so many whole cells ahead */
 };
 
 /* Why the loop over events came back. */
@@ -93,6 +97,8 @@ struct ed {
     double   *spin, *angle;     /* with ROTATION; the angle at the epoch */
     uint32_t *contacts;         /* with COLLISION_RATE: begun in this window */
     float    *rate;             /* and in the last whole one, per time */
+    uint32_t *begun, *elastic;  /* with COLLISION_COUNT: contacts since the start, elastic ones */
+    bool      watches;          /* the scene wants something counted (ed_watch.h) */
     uint32_t next_id;
     uint32_t *order, *place;    /* for sorting */
 
@@ -100,6 +106,7 @@ struct ed {
     double   diameter2;
     double   gx, gy;
     double   wrap_x, wrap_y, unwrap_x, unwrap_y;        /* period and its inverse; 0: none */
+    bool     sheared;           /* the image above is, or may come, ahead */
     struct ed_law   law;
     struct ed_cells cells;
     struct ed_queue queue;

@@ -31,6 +31,12 @@ static void lay_faces(double *low, double *high, uint32_t n, double origin, doub
     else high[n] = INFINITY;
 }
 
+/* With margins two neighbours are less than half a period apart still. */
+static double margin_max(uint32_t n, double length, bool wraps)
+{
+    return wraps ? 0.5 * fmax(0.5 * length - 2 * length / n, 0) : INFINITY;
+}
+
 bool ed_cells_create(struct ed_cells *cells, const struct ed_grid *grid, uint32_t count_max,
                      struct arena *arena)
 {
@@ -39,9 +45,10 @@ bool ed_cells_create(struct ed_cells *cells, const struct ed_grid *grid, uint32_
     while (ceil(lx / width) * ceil(ly / width) > grid->cells_max) width *= 1.1;
     *cells = (struct ed_cells){.x0 = grid->box[0], .y0 = grid->box[1],
                                .wraps_x = grid->wraps_x, .wraps_y = grid->wraps_y};
-    /* A period needs three cells, or a neighbour would be met from both sides. */
-    cells->nx = axis_count(lx, grid->wraps_x ? fmin(width, lx / 3) : width);
-    cells->ny = axis_count(ly, grid->wraps_y ? fmin(width, ly / 3) : width);
+    /* Grains in neighbouring cells may be two cells apart, and are taken to be nearest neighbours
+     * through the period: so a period needs four cells, and none of them a wide margin. */
+    cells->nx = axis_count(lx, grid->wraps_x ? fmin(width, lx / 4) : width);
+    cells->ny = axis_count(ly, grid->wraps_y ? fmin(width, ly / 4) : width);
     cells->width_x = lx / cells->nx;
     cells->width_y = ly / cells->ny;
     cells->stride = cells->nx + 2;
@@ -55,7 +62,8 @@ bool ed_cells_create(struct ed_cells *cells, const struct ed_grid *grid, uint32_
         || !arena_array(arena, &cells->north, cells->ny + 2)) return false;
     const double spare_x = fmax(cells->width_x - grid->reach, 0),
                  spare_y = fmax(cells->width_y - grid->reach, 0);
-    const double mx = 0.5 * grid->margin * spare_x, my = 0.5 * grid->margin * spare_y;
+    const double mx = fmin(0.5 * grid->margin * spare_x, margin_max(cells->nx, lx, grid->wraps_x)),
+                 my = fmin(0.5 * grid->margin * spare_y, margin_max(cells->ny, ly, grid->wraps_y));
     const double open_x = grid->wraps_x ? mx : grid->beyond,
                  open_y = grid->wraps_y ? my : grid->beyond;
     lay_faces(cells->west, cells->east, cells->nx, cells->x0, cells->width_x, mx,

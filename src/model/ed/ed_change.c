@@ -6,6 +6,8 @@
 
 #include "model/ed/ed.h"
 #include "model/ed/ed_epoch.h"
+#include "model/ed/ed_shear.h"
+#include "model/ed/ed_watch.h"
 
 #include <math.h>
 
@@ -75,8 +77,8 @@ static void bounce(struct ed *ed, uint32_t i, uint32_t w, const struct ed_touch 
                                              + (stuff < law->species_count ? stuff : 0)];
     double r = pair->restitution;
     const double closing = fmax(-touch->vn, 0);
-    if (law->t_c > 0 && now - e->last < law->t_c) r = 1;
-    else r = ed_law_restitution(law, r, closing);
+    const bool elastic = law->t_c > 0 && now - e->last < law->t_c;
+    r = elastic ? 1 : ed_law_restitution(law, r, closing);
     e->last = now;
     const double away = fmax(r * closing, bounce_least * 0.5 * touch->press * law->t_c);
     const double dvn = away - touch->vn;
@@ -94,7 +96,7 @@ static void bounce(struct ed *ed, uint32_t i, uint32_t w, const struct ed_touch 
     kick(ed, i, dvx, dvy);
     tally_impulse(ed, w, touch, -m * dvx, -m * dvy);
     ed->clock.wall_contacts++;
-    if (ed->contacts) ed->contacts[i]++;
+    if (ed->watches) ed_watch_wall(ed, i, touch, m * dvx, m * dvy, elastic);
 }
 
 bool ed_change_solid(struct ed *ed, uint32_t i)
@@ -190,6 +192,7 @@ static void add_grain(struct ed *ed, const struct source_grain *grain)
         ed->contacts[i] = 0;
         ed->rate[i] = 0;
     }
+    if (ed->begun) ed->begun[i] = ed->elastic[i] = 0;
     ed_cells_place(&ed->cells, grain->x, grain->y, &e->cx, &e->cy);
     ed_cells_put(&ed->cells, ed_cells_index(&ed->cells, e->cx, e->cy), i);
     ed->kernels->predict_one(ed, i);
@@ -236,7 +239,7 @@ static void let_in(struct ed *ed, double t)
 
 double ed_change_next(const struct ed *ed)
 {
-    return fmin(fmin(rate_end(ed), wall_change(ed)), inflow_due(ed));
+    return fmin(fmin(rate_end(ed), wall_change(ed)), fmin(inflow_due(ed), ed_shear_due(ed)));
 }
 
 void ed_change_apply(struct ed *ed, double t)
@@ -254,6 +257,10 @@ void ed_change_apply(struct ed *ed, double t)
         ed->clock.now = fmax(ed->clock.now, ed_since_epoch(&ed->clock, t));
         ed_epoch_begin(ed);
         ed_epoch_predict(ed);
+    }
+    if (ed_shear_due(ed) <= t) {
+        ed->clock.now = fmax(ed->clock.now, ed_since_epoch(&ed->clock, t));
+        ed_shear_slide(ed);
     }
     if (inflow_due(ed) <= t) {
         ed->clock.now = fmax(ed->clock.now, ed_since_epoch(&ed->clock, t));

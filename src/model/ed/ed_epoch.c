@@ -10,6 +10,7 @@
 #include "model/ed/ed_epoch.h"
 
 #include "model/ed/ed.h"
+#include "model/ed/ed_shear.h"
 
 #include <math.h>
 
@@ -45,6 +46,10 @@ void ed_epoch_copy(struct ed *ed, uint32_t to, uint32_t from)
         ed->contacts[to] = ed->contacts[from];
         ed->rate[to] = ed->rate[from];
     }
+    if (ed->begun) {
+        ed->begun[to] = ed->begun[from];
+        ed->elastic[to] = ed->elastic[from];
+    }
 }
 
 /* Clocks are summed in two doubles, so that steps below the last digit of the time add up. */
@@ -71,6 +76,7 @@ void ed_epoch_shift(struct ed *ed)
         if (ed->spin) ed->angle[i] = remainder(ed->angle[i] + t * ed->spin[i], 2 * M_PI);
     }
     clock_add(&ed->clock, t);
+    ed_shear_shift(ed, t);
     ed->clock.stuck_mark -= t;
     ed->clock.now = 0;
 }

@@ -9,6 +9,7 @@
 #include "model/ed/ed.h"
 #include "model/ed/ed_change.h"
 #include "model/ed/ed_scan.h"
+#include "model/ed/ed_watch.h"
 
 #include <math.h>
 
@@ -102,6 +103,25 @@ FORCE_INLINE void around(uint32_t c, uint32_t n, bool wraps, uint32_t out[3])
     out[2] = wraps && c == n ? 1 : c + 1;
 }
 
+/* The cells in columns xs of row y; four of them if the row lies across a sheared seam from cy. */
+FORCE_INLINE uint32_t gather_row(struct ed *ed, const uint32_t xs[3], uint32_t y, uint32_t cy,
+                                 uint32_t *list, uint32_t n, struct scan *scan, int with)
+{
+    const struct ed_cells *c = &ed->cells;
+    const bool above = cy == c->ny && y == 1, below = cy == 1 && y == c->ny;
+    if (__builtin_expect(ed->sheared && (above || below), 0)) {
+        uint32_t x = ed_shear_column(ed, xs[1], above);
+        for (int k = 0; k < 4; k++, x = x == c->nx ? 1 : x + 1) {
+            n = gather(ed, ed_cells_index(c, x, y), list, n, scan, with);
+        }
+        return n;
+    }
+    for (int k = 0; k < 3; k++) {
+        n = gather(ed, ed_cells_index(c, xs[k], y), list, n, scan, with);
+    }
+    return n;
+}
+
 /* Completes grain i's event once its contact with grains is known: walls, and its cell's faces. */
 FORCE_INLINE void conclude(struct ed *ed, uint32_t i, int with)
 {
@@ -161,8 +181,8 @@ FORCE_INLINE void predict(struct ed *ed, uint32_t i, int with)
         uint32_t xs[3], ys[3];
         around(e->cx, c->nx, c->wraps_x, xs);
         around(e->cy, c->ny, c->wraps_y, ys);
-        for (int k = 0; k < 9; k++) {
-            n = gather(ed, ed_cells_index(c, xs[k % 3], ys[k / 3]), list, n, &scan, with);
+        for (int row = 0; row < 3; row++) {
+            n = gather_row(ed, xs, ys[row], e->cy, list, n, &scan, with);
         }
     }
     scan_list(ed, &scan, list, n, with & WITH_SIZES);
@@ -213,6 +233,11 @@ FORCE_INLINE void cross(struct ed *ed, uint32_t i, int with)
     cy += along_x ? 0 : (up ? 1 : UINT32_MAX);
     if (with & WITH_SOLIDS && ed_change_leaves(ed, cx, cy)) {
         ed_change_remove(ed, i);
+        return;
+    }
+    if (__builtin_expect(ed->sheared, 0) && ed_shear_concerns(ed, cy)) {
+        ed_shear_cross(ed, i, cx, cy);
+        predict(ed, i, with);
         return;
     }
     scan_remove(&ed->cells, ed_cells_index(c, e->cx, e->cy), i);
@@ -288,7 +313,9 @@ FORCE_INLINE void collide(struct ed *ed, uint32_t i, int with)
     const struct ed_pair *pair = &ed->law.pairs[ed_species(ed, i) * ed->law.species_count
                                                 + ed_species(ed, j)];
     double r = pair->restitution;
-    if (ed->law.t_c > 0 && (now - e->last < ed->law.t_c || now - f->last < ed->law.t_c)) {
+    const bool elastic = ed->law.t_c > 0
+                      && (now - e->last < ed->law.t_c || now - f->last < ed->law.t_c);
+    if (elastic) {
         r = 1;
         ed->clock.elastic++;
     } else {
@@ -316,9 +343,10 @@ FORCE_INLINE void collide(struct ed *ed, uint32_t i, int with)
     kick(ed, i, sx, sy);
     kick(ed, j, -sx * back, -sy * back);
     ed->clock.collisions++;
-    if (ed->contacts) {
-        ed->contacts[i]++;
-        ed->contacts[j]++;
+    if (ed->watches) {
+        const struct ed_blow blow = {a.dx, a.dy, a.du, a.dv, ed_mass(ed, i) * sx,
+                                     ed_mass(ed, i) * sy};
+        ed_watch_pair(ed, i, j, &blow, elastic);
     }
     predict(ed, i, with);
     predict(ed, j, with);

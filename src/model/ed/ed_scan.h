@@ -8,6 +8,7 @@
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/ed/ed.h"
+#include "model/ed/ed_shear.h"
 
 #include <math.h>
 #ifdef SCAN_AVX2
@@ -38,8 +39,11 @@ scan_approach(const struct ed *ed, const struct ed_grain *g, const struct ed_gra
     a.dx = (o->x - g->x) + a.du * t;
     a.dy = (o->y - g->y) + a.dv * t;
     if (wraps) {
+        const double up = rint(a.dy * ed->unwrap_y);    /* images; above they are ahead */
+        a.dy -= ed->wrap_y * up;
+        a.dx -= ed_shear_ahead(ed, t) * up;
+        a.du -= ed->clock.shear_speed * up;
         a.dx -= ed->wrap_x * rint(a.dx * ed->unwrap_x);
-        a.dy -= ed->wrap_y * rint(a.dy * ed->unwrap_y);
     }
     a.b = a.dx * a.du + a.dy * a.dv;
     return a;
@@ -190,20 +194,23 @@ scan_list(const struct ed *ed, struct scan *scan, uint32_t *list, uint32_t n, bo
                       d = _mm256_load_pd(&grains[list[k + 3]].x);
         const __m256d ab_low = _mm256_unpacklo_pd(a, b), ab_high = _mm256_unpackhi_pd(a, b),
                       cd_low = _mm256_unpacklo_pd(c, d), cd_high = _mm256_unpackhi_pd(c, d);
-        const __m256d du = _mm256_sub_pd(_mm256_permute2f128_pd(ab_low, cd_low, 0x31), vx),
-                      dv = _mm256_sub_pd(_mm256_permute2f128_pd(ab_high, cd_high, 0x31), vy);
+        __m256d du = _mm256_sub_pd(_mm256_permute2f128_pd(ab_low, cd_low, 0x31), vx);
+        const __m256d dv = _mm256_sub_pd(_mm256_permute2f128_pd(ab_high, cd_high, 0x31), vy);
         __m256d dx = _mm256_sub_pd(_mm256_permute2f128_pd(ab_low, cd_low, 0x20), x),
                 dy = _mm256_sub_pd(_mm256_permute2f128_pd(ab_high, cd_high, 0x20), y);
         dx = _mm256_add_pd(dx, _mm256_mul_pd(du, t));
         dy = _mm256_add_pd(dy, _mm256_mul_pd(dv, t));
         if (__builtin_expect(scan->wraps, 0)) {
             enum { nearest = _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC };
-            const __m256d turns_x = _mm256_mul_pd(dx, _mm256_set1_pd(ed->unwrap_x)),
-                          turns_y = _mm256_mul_pd(dy, _mm256_set1_pd(ed->unwrap_y));
+            const __m256d up = _mm256_round_pd(
+                _mm256_mul_pd(dy, _mm256_set1_pd(ed->unwrap_y)), nearest);
+            dy = _mm256_sub_pd(dy, _mm256_mul_pd(_mm256_set1_pd(ed->wrap_y), up));
+            dx = _mm256_sub_pd(dx, _mm256_mul_pd(
+                _mm256_set1_pd(ed_shear_ahead(ed, ed->clock.now)), up));
+            du = _mm256_sub_pd(du, _mm256_mul_pd(_mm256_set1_pd(ed->clock.shear_speed), up));
+            const __m256d turns_x = _mm256_mul_pd(dx, _mm256_set1_pd(ed->unwrap_x));
             dx = _mm256_sub_pd(dx, _mm256_mul_pd(_mm256_set1_pd(ed->wrap_x),
                                                  _mm256_round_pd(turns_x, nearest)));
-            dy = _mm256_sub_pd(dy, _mm256_mul_pd(_mm256_set1_pd(ed->wrap_y),
-                                                 _mm256_round_pd(turns_y, nearest)));
         }
         if (sizes) {
             const double *r = ed->radius;

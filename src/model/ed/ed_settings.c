@@ -108,11 +108,11 @@ void ed_settings_resolve(struct scene *scene, struct findings *findings)
     }
     struct ed_settings *given = scene_settings(scene, ed_settings_group.name);
     if (given) given->t_c = ed_settings_of(scene).t_c;
-    const double need = 3 * 2 * scene->radius_max * 1.001;
+    const double need = 4 * 2 * scene->radius_max * 1.001;      /* four cells: ed_cells.c */
     const bool narrow_x = scene->left == BORDER_PERIODIC && scene->box[2] - scene->box[0] < need,
                narrow_y = scene->bottom == BORDER_PERIODIC && scene->box[3] - scene->box[1] < need;
     if (narrow_x || narrow_y) {
         findings_tell(findings, scene, FINDING_ERROR, "box", "a periodic box must be wider than "
-            "three of the largest grains (%g) for the event-driven model", need);
+            "four of the largest grains (%g) for the event-driven model", need);
     }
 }

@@ -5,8 +5,7 @@
  * Seven grains fill a node: one in its centre and six around it, at spacing / sqrt(7), turned by
  * 19.1 degrees against the links.  Those places of all nodes together form a perfect triangular
  * lattice, so a heap at rest looks like densely packed discs of diameter spacing / sqrt(7), and
- * the default spacing is sqrt(7) mean diameters.  Grains have no identity here: a picture numbers
- * them by node and place.
+ * the default spacing is sqrt(7) mean diameters.
  */
 #include "model/lga/lga_bits.h"
 
@@ -41,6 +40,8 @@ static const struct key keys[] = {
      "chance that gravity acts on a node in a tick"},
     {"s", KEY_REAL, ROW(s), "0", 0, 1, "1", NULL,
      "static friction: chance that a grain supported on one side stays"},
+    {"frozen_friction", KEY_BOOL, ROW(frozen_friction), "false", NAN, NAN, NULL, NULL,
+     "gmlg: that chance is drawn once for each node and side, not anew in every tick"},
     {"pw", KEY_REAL, ROW(pw), "nan", 0, 1, "1", NULL,
      "chance that a grain stops at a wall or a full node instead of bouncing back; when absent k"},
     {"gain", KEY_REAL, ROW(gain), "1", 0, 1, "1", NULL,
@@ -170,12 +171,21 @@ static void lga_resolve(struct scene *scene, struct findings *findings)
 static uint64_t lga_memory(const struct scene *scene)
 {
     const struct lga_settings s = completed(scene);
-    const double plain = LGA_DIRECTIONS * sizeof(uint32_t) + 8, fast = (LGA_PLANES + 4) / 8.0;
+    const int planes = s.method == LGA_GMLG ? LGA_GMLG_PLANES : LGA_PLANES;
+    const double plain = LGA_DIRECTIONS * sizeof(uint32_t) + 8, fast = (planes + 4) / 8.0;
     const double sites = fmin(sites_about(scene, s.spacing), 1e15);
     return (uint64_t)(sites * (is_fast(&s) ? fast : plain));
 }
 
 /* --- life --- */
+
+/* Gravity lets seven grains into a node, but a phase without it may have left more there. */
+static bool is_crowded(const struct lga *lga)
+{
+    if (lga->rule.method != LGA_GMLG || !lga->rule.gravity) return false;
+    for (uint32_t n = 0; n < lga->sites; n++) if (lga_node_load(lga, n) > LGA_ROOM) return true;
+    return false;
+}
 
 /* The walls may have changed: by a gate, or because a saved state was loaded. */
 static void update_walls(struct lga *lga)
@@ -224,7 +234,8 @@ static bool set_up(struct lga *lga, struct error *error)
     lga->rule = (struct lga_rule){
         .method = (enum lga_method)s.method, .gravity = scene->effects & EFFECT_GRAVITY,
         .vertical = s.method == LGA_GMLG && s.orientation == LGA_VERTICAL,
-        .inelastic = s.k, .fall = s.g, .friction = s.s, .wall_stop = s.pw, .gain = s.gain,
+        .inelastic = s.k, .fall = s.g, .friction = s.s, .frozen = s.frozen_friction,
+        .wall_stop = s.pw, .gain = s.gain,
         .loss = s.p, .smooth = 1 - s.b, .fly = s.fly, .strict = s.strict,
         .heap = s.heap && s.method == LGA_SANDPILE
     };
@@ -269,75 +280,7 @@ static enum advance lga_advance(void *state, double t_end, uint64_t budget)
     return ADVANCE_REACHED;
 }
 
-/* --- looking --- */
-
-/* Where the grain in place `place` of a node lies: 0 in the centre, 1 + d towards direction d. */
-static void place_position(const struct lga *lga, uint32_t site, int place, double *x, double *y)
-{
-    lga_lattice_position(&lga->lattice, site, x, y);
-    if (place > 0) {
-        double dx, dy;
-        const double turn = asin(sqrt(3) / (2 * SQRT7));        /* 19.1 degrees */
-        lga_lattice_vector(&lga->lattice, (place - 1) * M_PI / 3 + turn, &dx, &dy);
-        *x += dx / SQRT7;
-        *y += dy / SQRT7;
-    }
-    const double *box = lga->lattice.box;
-    if (lga->lattice.wraps_x) *x -= (box[2] - box[0]) * floor((*x - box[0]) / (box[2] - box[0]));
-    if (lga->lattice.wraps_y) *y -= (box[3] - box[1]) * floor((*y - box[1]) / (box[3] - box[1]));
-}
-
-static void show(const struct lga *lga, struct grains *out, uint32_t id, uint32_t site, int place,
-                 bool flies)
-{
-    double x, y, vx = 0, vy = 0;
-    place_position(lga, site, place, &x, &y);
-    if (flies) lga_lattice_vector(&lga->lattice, (place - 1) * M_PI / 3, &vx, &vy);
-    const double *w = out->window;
-    if (w[0] <= w[2] && (x < w[0] || x > w[2] || y < w[1] || y > w[3])) return;
-    if (out->count == out->capacity) {
-        out->missed++;
-        return;
-    }
-    const uint32_t i = out->count++;
-    if (out->id) out->id[i] = id;
-    if (out->x) out->x[i] = x;
-    if (out->y) out->y[i] = y;
-    if (out->vx) out->vx[i] = vx / lga->tick;
-    if (out->vy) out->vy[i] = vy / lga->tick;
-    if (out->angle) out->angle[i] = 0;
-    if (out->spin) out->spin[i] = 0;
-    if (out->radius) out->radius[i] = lga->radius;
-    if (out->mass) out->mass[i] = lga->mass;
-    if (out->collision_rate) out->collision_rate[i] = 0;
-    if (out->species) out->species[i] = 0;
-}
-
-static void lga_observe(const void *state, struct grains *out)
-{
-    const struct lga *lga = state;
-    out->time = lga_step_time(lga);
-    out->count = out->contact_count = out->missed = 0;
-    uint32_t id = 0;
-    for (uint32_t n = 0; n < lga->sites; n++) {
-        const struct lga_node node = lga_node_get(lga, n);
-        const unsigned moving = node.moving;
-        int resting = node.rest;
-        if (moving == 0 && resting == 0) continue;
-        for (int d = 0; d < LGA_DIRECTIONS; d++) {
-            if (moving >> d & 1) show(lga, out, id++, n, d + 1, true);
-        }
-        /* Rest grains: centre first, then places without a mover; without gravity a node may hold
-         * more grains than places, and then they share. */
-        for (int round = 0; resting > 0; round++) {
-            for (int place = 0; place <= LGA_DIRECTIONS && resting > 0; place++) {
-                if (round == 0 && place > 0 && moving >> (place - 1) & 1) continue;
-                show(lga, out, id++, n, place, false);
-                resting--;
-            }
-        }
-    }
-}
+/* --- counting --- */
 
 /* All grains of a row of nodes are alike high, or (turned) they are asked one by one. */
 static void count_row(const struct lga *lga, uint32_t row, uint64_t sum[LGA_PLANES],
@@ -397,7 +340,7 @@ static void lga_archive(void *state, struct archive *archive)
     double tick = lga->tick;
     if (lga->bits) {
         archive_array(archive, "lga.planes", lga->bits->planes,
-                      (size_t)lga->lattice.rows * LGA_PLANES * lga->bits->words);
+                      (size_t)lga->lattice.rows * lga->bits->depth * lga->bits->words);
     } else {
         archive_array(archive, "lga.moving", lga->moving, lga->sites);
         archive_array(archive, "lga.rest", lga->rest, lga->sites);
@@ -428,6 +371,7 @@ static void lga_archive(void *state, struct archive *archive)
         lga->base_ticks = lga->ticks;
     }
     lga->walls_stale = true;
+    lga->crowded = is_crowded(lga);
 }
 
 const struct model model_lga = {
@@ -445,7 +389,8 @@ const struct model model_lga = {
     .create   = lga_create,
     .destroy  = lga_destroy,
     .advance  = lga_advance,
-    .observe  = lga_observe,
+    .observe  = lga_look_list,
+    .sample   = lga_look_sample,
     .archive  = lga_archive,
     .count    = lga_count,
 };

@@ -12,9 +12,9 @@
  *           more than one rest grain on a node walks away; sand piles up, one grain a node.
  * gmlg      up to seven rest grains a node, elastic and inelastic collisions, and exclusion.
  *
- * Two forms hold the state.  In the plain one every node has its bytes; in the fast one (fhp2) a
- * row is seven planes of bits, and 64 nodes a word are computed at once (lga_bits.c).  The same
- * random bits give the same lattice in both.
+ * Two forms hold the state.  In the plain one every node has its bytes; in the fast one a row is
+ * seven planes of bits (nine of the gmlg), and 64 nodes a word are computed at once (lga_bits.c).
+ * The same random bits give the same lattice in both.
  *
  * Storage: rows of columns, odd rows shifted by half a spacing; a torus.  Where the scene has no
  * periodic border a ring of wall or sink nodes lies around the rest.  In orientation H gravity
@@ -47,6 +47,7 @@ struct lga_settings {
     int    method;
     double spacing, tick;
     double k, g, s, pw, gain;
+    bool   frozen_friction;
     int    orientation;         /* enum lga_orientation */
     double p, b, fill;
     bool   fly, strict, heap;
@@ -59,6 +60,7 @@ struct lga_rule {
     double inelastic;           /* k: share of collisions from the inelastic column */
     double fall;                /* g: chance that gravity acts on a node in a tick */
     double friction;            /* s: chance that a grain supported on one side stays */
+    bool   frozen;              /* that is drawn once for each contact, not in every tick */
     double wall_stop;           /* pw: chance that a blocked grain stops instead of bouncing */
     double gain;                /* chance that a mover kicks a rest grain up: {i} -> {i-1, i+1} */
     double loss;                /* p: share of lossy collisions of fhp2 and sandpile */
@@ -79,7 +81,21 @@ enum lga_die_kind {
     LGA_DIE_BEND, LGA_DIE_BEND_SIDE,    /* the same for one of the movers */
     LGA_DIE_MIRROR,             /* walls reflect like mirrors, not back */
     LGA_DIE_PLATE,              /* what falls onto the plate stays there */
-    LGA_DICE
+    LGA_DIE_PICK_THIRD, LGA_DIE_PICK_FIFTH, LGA_DIE_PICK_COIN, LGA_DIE_PICK_SECOND,
+                                /* which mover of a node bends: one of up to six, alike */
+    LGA_DIE_FRICTION_LEFT, LGA_DIE_FRICTION_RIGHT,      /* a grain does not roll to that side */
+    LGA_DIE_WAY_THIRD, LGA_DIE_WAY_SIDE,        /* which pairs stop where not all have room */
+    LGA_DIE_ADMIT_THIRD, LGA_DIE_ADMIT_FIFTH,   /* who comes to a node that has not room for all */
+    LGA_DIE_ADMIT_COIN,         /* six of them */
+    LGA_DIE_STOP = LGA_DIE_ADMIT_COIN + 6,      /* a mover that cannot leave stops: a die each */
+    LGA_DICE = LGA_DIE_STOP + LGA_DIRECTIONS
+};
+
+/* The dice of a row come in stages, each from a stream of its own, so that what one of them draws
+ * does not depend on whether others are needed. */
+enum lga_stage {
+    LGA_STAGE_COLLIDE, LGA_STAGE_FALL, LGA_STAGE_ADMIT, LGA_STAGE_STOP, LGA_STAGE_WAYS,
+    LGA_STAGE_FRICTION, LGA_STAGES
 };
 
 /* Probability threshold / 2^bits; with bits = 0 never (0) or always (1). */
@@ -126,6 +142,7 @@ struct lga {
     double   fill;              /* share of the slots with movers at the start */
     bool     plain;             /* no fast form, though there is one: for comparison */
     bool     sinks;             /* some node may be a sink */
+    bool     crowded;           /* gmlg: some node may hold more than gravity lets in */
     uint32_t words;             /* of 64 nodes in a row: column x is bit x / words of x % words */
     uint64_t *rolled[LGA_DICE]; /* plain form: the bits of this tick, [row][word] */
     uint32_t sites;
@@ -179,11 +196,11 @@ struct lga_die lga_dice_die(double probability);
 struct lga_dice lga_dice_of(const struct lga_rule *rule);
 uint32_t lga_dice_words(uint32_t columns);
 
-/* Where a row's random words come from: those of a sandpile in two stages, before and after the
- * walks of its surplus grains. */
+/* Where a row's random words come from. */
 struct lga_dice_source { uint64_t seed, tick; uint32_t row, stage; };
 uint64_t lga_dice_key(struct lga_dice_source source);
-uint32_t lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind);
+uint64_t lga_dice_now(const struct lga *lga, uint32_t row, enum lga_stage stage);
+enum lga_stage lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind);
 
 enum lga_simd lga_dice_simd(void);      /* the best of this machine */
 
@@ -214,6 +231,12 @@ bool lga_fill_placed(struct lga *lga, struct error *error);
 void lga_fill_sources(struct lga *lga);
 void lga_fill_release_trapped(struct lga *lga);
 
+/* lga_look.c: `observe` and `sample` of the model. */
+struct field;
+struct grains;
+void lga_look_list(const void *state, struct grains *out);
+bool lga_look_sample(const void *state, struct field *field);
+
 /* lga_step.c: one tick by any rules, and the streaming that they share.  Allocation takes an empty
  * `lga` whose lattice, rule and sites are set. */
 bool lga_step_is_fast(const struct lga_rule *rule);     /* is there a fast form? */
@@ -225,6 +248,11 @@ double lga_step_time(const struct lga *lga);
  * mirrored instead. */
 unsigned lga_step_mirrored(unsigned blocked, unsigned stuck, unsigned moving);
 
+/* lga_plain.c: the random bits of the plain form. */
+bool lga_plain_allocate(struct lga *lga);
+void lga_plain_roll(struct lga *lga);
+bool lga_plain_die(const struct lga *lga, enum lga_die_kind kind, uint32_t site);
+
 /* lga_gmlg.c, lga_sand.c: what happens before streaming, in the plain form. */
 void lga_gmlg_collide(struct lga *lga);
 bool lga_sand_allocate(struct lga *lga);
@@ -233,6 +261,5 @@ void lga_sand_settle(struct lga *lga);  /* and after it: contacts with the heap 
 
 /* Which of the movers bends down, *from, and where to; `left` is the outcome of the die. */
 int lga_sand_bend(const struct lga *lga, uint32_t site, unsigned moving, bool left, int *from);
-bool lga_sand_die(const struct lga *lga, enum lga_die_kind kind, uint32_t site);
 
 #endif

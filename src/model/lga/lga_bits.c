@@ -1,4 +1,4 @@
-/* lga_bits.c - FHP-II in planes of bits.
+/* lga_bits.c - FHP-II in planes of bits, and what all fast forms share.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  *
@@ -55,7 +55,7 @@ static uint32_t row_at(const struct lga *lga, uint32_t row, int step)
 
 static uint64_t *plane(const struct lga_bits *bits, uint32_t row, uint32_t p)
 {
-    return bits->planes + ((size_t)row * LGA_PLANES + p) * bits->words;
+    return bits->planes + ((size_t)row * bits->depth + p) * bits->words;
 }
 
 /* The first word of a row; the margin lies before it. */
@@ -91,6 +91,17 @@ static void join_ends(uint64_t *row, uint32_t words, uint32_t columns)
     if (full) row[words] |= row[0] << 63;
 }
 
+int lga_bits_shift(uint32_t row, int direction) { return column_step[row & 1][direction]; }
+
+void lga_bits_trim(const struct lga *lga, uint32_t row)
+{
+    const struct lga_bits *bits = lga->bits;
+    if (lga->lattice.columns == 64 * bits->words) return;
+    for (uint32_t p = 0; p < bits->depth; p++) {        /* the column that stands for the first */
+        put_bit(plane(bits, row, p), bits->words, lga->lattice.columns, 0);
+    }
+}
+
 uint64_t *lga_bits_row(const struct lga *lga, uint32_t row) { return plane(lga->bits, row, 0); }
 
 uint64_t *lga_bits_wall(const struct lga *lga, uint32_t row) { return wall_row(lga->bits, row); }
@@ -109,13 +120,15 @@ bool lga_bits_allocate(struct lga *lga)
     bits->words = lga->words;
     bits->stride = bits->words + 2 * LGA_LANES;
     bits->bands = rows / 2 < threads ? rows / 2 : threads;
-    const bool sandpile = lga->rule.method == LGA_SANDPILE;
+    const bool sandpile = lga->rule.method == LGA_SANDPILE, gmlg = lga->rule.method == LGA_GMLG;
+    bits->depth = gmlg ? LGA_GMLG_PLANES : LGA_PLANES;
     const size_t ring = (size_t)LGA_RING * LGA_RING_PLANES * bits->stride;
-    return arena_array(arena, &bits->planes, (size_t)rows * LGA_PLANES * bits->words)
+    return arena_array(arena, &bits->planes, (size_t)rows * bits->depth * bits->words)
         && arena_array(arena, &bits->wall, (size_t)rows * bits->stride)
         && arena_array(arena, &bits->sink, lga->sinks ? (size_t)rows * bits->words : 0)
         && arena_array(arena, &bits->kinds, (size_t)bits->bands * lga->lattice.columns)
-        && arena_array(arena, &bits->rings, bits->bands * ring)
+        && (gmlg ? lga_bits_gmlg_allocate(lga)
+                 : arena_array(arena, &bits->rings, bits->bands * ring))
         && (!sandpile || lga_bits_sand_allocate(lga));
 }
 
@@ -217,15 +230,11 @@ static uint64_t stream(const struct lga *lga, uint32_t y, uint64_t *const ring[3
     if (effects & LGA_BITS_MIRROR) {
         reflect(lga, &row, ring[1] + LGA_PLANES * bits->stride);
     }
-    if (lga->lattice.columns < 64 * bits->words) {      /* the column that stands for the first */
-        for (uint32_t d = 0; d < LGA_DIRECTIONS; d++) {
-            put_bit(row.out + d * bits->words, bits->words, lga->lattice.columns, 0);
-        }
-    }
+    lga_bits_trim(lga, y);
     return left;
 }
 
-static uint32_t band_start(const struct lga *lga, uint32_t band)
+uint32_t lga_bits_band(const struct lga *lga, uint32_t band)
 {
     return (uint32_t)((uint64_t)lga->lattice.rows * band / lga->bits->bands);
 }
@@ -235,7 +244,7 @@ struct passed { uint64_t collisions, left; };
 static struct passed pass_band(const struct lga *lga, uint32_t band, unsigned effects)
 {
     const struct lga_bits *bits = lga->bits;
-    const uint32_t y0 = band_start(lga, band), y1 = band_start(lga, band + 1);
+    const uint32_t y0 = lga_bits_band(lga, band), y1 = lga_bits_band(lga, band + 1);
     const uint32_t before = (band + bits->bands - 1) % bits->bands;
     const uint32_t after = (band + 1) % bits->bands;
     uint64_t *ring[3] = {ring_row(bits, before, 1), ring_row(bits, band, 0), NULL};
@@ -259,12 +268,17 @@ void lga_bits_step(struct lga *lga)
     const struct lga_bits *bits = lga->bits;
     const unsigned effects = effects_of(lga);
     uint64_t collisions = 0, left = 0;
+    if (lga->rule.method == LGA_GMLG) {
+        lga_bits_gmlg_step(lga, kernels[lga->simd]);
+        lga->ticks++;
+        return;
+    }
     if (lga->rule.method == LGA_SANDPILE) {
         collisions += lga_bits_sand_stop(lga, kernels[lga->simd]);
     }
     #pragma omp parallel for schedule(static, 1) reduction(+ : collisions)
     for (uint32_t band = 0; band < bits->bands; band++) {
-        const uint32_t y0 = band_start(lga, band), y1 = band_start(lga, band + 1);
+        const uint32_t y0 = lga_bits_band(lga, band), y1 = lga_bits_band(lga, band + 1);
         collisions += prepare(lga, y0, band, 0, effects);
         collisions += prepare(lga, y1 - 1, band, 1, effects);
     }
@@ -299,7 +313,7 @@ void lga_bits_rasterise(struct lga *lga, double t)
     #pragma omp parallel for schedule(static, 1)
     for (uint32_t band = 0; band < bits->bands; band++) {
         uint8_t *kind = bits->kinds + (size_t)band * lga->lattice.columns;
-        for (uint32_t row = band_start(lga, band); row < band_start(lga, band + 1); row++) {
+        for (uint32_t row = lga_bits_band(lga, band); row < lga_bits_band(lga, band + 1); row++) {
             lga_lattice_rasterise(&lga->lattice, lga->scene, t, row, kind);
             lga_bits_set_kinds(lga, row, kind);
         }
@@ -328,7 +342,10 @@ struct lga_node lga_bits_node(const struct lga *lga, uint32_t site)
     for (uint32_t d = 0; d < LGA_DIRECTIONS; d++) {
         node.moving |= (uint8_t)(get_bit(plane(bits, row, d), bits->words, x) << d);
     }
-    node.rest = (uint8_t)get_bit(plane(bits, row, LGA_DIRECTIONS), bits->words, x);
+    for (uint32_t p = LGA_DIRECTIONS; p < bits->depth; p++) {
+        const uint64_t digit = get_bit(plane(bits, row, p), bits->words, x);
+        node.rest |= (uint8_t)(digit << (p - LGA_DIRECTIONS));
+    }
     if (get_bit(wall_row(bits, row), bits->words, x)) node.kind = LGA_WALL;
     if (bits->sink && get_bit(bits->sink + (size_t)row * bits->words, bits->words, x)) {
         node.kind = LGA_SINK;
@@ -340,20 +357,23 @@ void lga_bits_set(struct lga *lga, uint32_t site, unsigned moving, unsigned rest
 {
     const struct lga_bits *bits = lga->bits;
     const uint32_t row = site / lga->lattice.columns, x = site % lga->lattice.columns;
-    assert(rest <= 1);
-    for (uint32_t d = 0; d < LGA_DIRECTIONS; d++) {
-        put_bit(plane(bits, row, d), bits->words, x, moving >> d & 1);
+    const uint64_t state = moving | (uint64_t)rest << LGA_DIRECTIONS;
+    assert(state >> bits->depth == 0);
+    for (uint32_t p = 0; p < bits->depth; p++) {
+        put_bit(plane(bits, row, p), bits->words, x, state >> p & 1);
     }
-    put_bit(plane(bits, row, LGA_DIRECTIONS), bits->words, x, rest);
 }
 
 void lga_bits_sum(const struct lga *lga, uint32_t row, uint64_t sum[LGA_PLANES])
 {
-    for (uint32_t p = 0; p < LGA_PLANES; p++) {
+    for (int d = 0; d < LGA_PLANES; d++) sum[d] = 0;
+    for (uint32_t p = 0; p < lga->bits->depth; p++) {
         const uint64_t *words = plane(lga->bits, row, p);
-        sum[p] = 0;
+        uint64_t set = 0;
         for (uint32_t w = 0; w < lga->bits->words; w++) {
-            sum[p] += (uint64_t)__builtin_popcountll(words[w]);
+            set += (uint64_t)__builtin_popcountll(words[w]);
         }
+        if (p < LGA_DIRECTIONS) sum[p] = set;
+        else sum[LGA_DIRECTIONS] += set << (p - LGA_DIRECTIONS);
     }
 }

@@ -2,11 +2,12 @@
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  *
- * A row of `columns` nodes is seven planes (six directions and the rest grain) of `words` words:
+ * A row of `columns` nodes is seven planes (six directions and the rest grain; of the gmlg nine:
+ * three bits tell how many grains rest, the lowest first) of `words` words:
  * node x is bit x / words of word x % words.  So the nodes to the left of a word's nodes are the
  * word before it, and streaming is a load from the next address; only the ends of a row need a
- * shift.  The state is kept once and changed in place: memory is seven bits a node and one for
- * the walls.
+ * shift.  The state is kept once and changed in place: memory is seven or nine bits a node and one
+ * for the walls.
  */
 #ifndef LGA_BITS_H
 #define LGA_BITS_H
@@ -18,16 +19,22 @@ enum { LGA_PLANES = 7, LGA_RING = 6, LGA_RING_PLANES = LGA_PLANES + 1 };
 enum {
     LGA_BITS_LOSS = 1, LGA_BITS_GRAVITY = 2, LGA_BITS_WALLS = 4, LGA_BITS_SINKS = 8,
     LGA_BITS_HELD = 16,         /* grains caught by a wall wait inside it */
-    LGA_BITS_MIRROR = 32
+    LGA_BITS_MIRROR = 32,
+    LGA_BITS_VERTICAL = 64,     /* gmlg: gravity points along direction 3 */
+    LGA_BITS_TIGHT = 128        /* gmlg: a collision may need more room than a node has */
 };
+
+enum { LGA_GMLG_PLANES = 9 };
 
 struct lga_bits {
     uint32_t words, stride;     /* of a plane of the state; of a row with a margin on each side */
+    uint32_t depth;             /* planes of a row */
     uint32_t bands;             /* rows are shared out in so many parts */
     uint64_t *planes;           /* [row][plane][word] */
     uint64_t *wall;             /* [row][word], with margins */
     uint64_t *sink;             /* [row][word]; NULL: none */
     uint8_t  *kinds;            /* a row of them for each band, while walls are drawn */
+    uint64_t *real;             /* [word]: which bits of a row are its nodes; gmlg */
     uint64_t *rings;            /* rows after their collisions: [band][LGA_RING][plane][word] */
     uint64_t *surplus;          /* sandpile: rest grains beyond the first, in two bits:
                                  * [row][low, high][word] */
@@ -76,6 +83,46 @@ struct lga_row_fall {
     const uint64_t *wall_left, *wall_right, *taken_left, *taken_right;
 };
 
+/* The four passes of the gmlg: what room there is; collide and fall; who is let in; stream. */
+struct lga_row_survey {
+    uint32_t words, stride;
+    const uint64_t *planes, *wall, *sink;       /* sink may be NULL */
+    uint64_t *room, *full;
+};
+
+struct lga_row_gmlg {
+    uint32_t words, stride;
+    unsigned effects;
+    bool held;
+    uint64_t key[LGA_STAGES];
+    const struct lga_dice *dice;
+    const uint64_t *in, *wall;
+    const uint64_t *full[LGA_DIRECTIONS];       /* of the neighbours that are not above */
+    uint64_t *out;
+};
+
+struct lga_row_admit {
+    uint32_t words, stride;
+    bool crowds;                /* there is only so much room */
+    uint64_t key;
+    const struct lga_dice *dice;
+    const uint64_t *wall, *real, *room;
+    const uint64_t *own;
+    const uint64_t *from[LGA_DIRECTIONS];       /* where the movers of a direction come from */
+    uint64_t *out;
+};
+
+struct lga_row_arrive {
+    uint32_t words, stride;
+    bool held, blocks;          /* some mover may be unable to leave */
+    uint64_t key;
+    const struct lga_dice *dice;
+    const uint64_t *wall, *sink;
+    const uint64_t *own, *own_admitted;
+    const uint64_t *admitted[LGA_DIRECTIONS];   /* was a mover let in where it goes? */
+    uint64_t *out;
+};
+
 /* One set of instructions; the index is LGA_BITS_LOSS | LGA_BITS_GRAVITY, or walls yes or no. */
 struct lga_kernel {
     void (*roll)(const struct lga_dice *dice, uint64_t key, uint32_t words,
@@ -86,6 +133,13 @@ struct lga_kernel {
     uint64_t (*stream_any)(const struct lga_row_stream *row);
     uint64_t (*stop)(const struct lga_row_stop *row);
     void (*fall)(const struct lga_row_fall *row);
+    void (*survey)(const struct lga_row_survey *row);
+    uint64_t (*gmlg_free)(const struct lga_row_gmlg *row);
+    uint64_t (*gmlg_level)(const struct lga_row_gmlg *row);
+    uint64_t (*gmlg_vertical)(const struct lga_row_gmlg *row);
+    uint64_t (*gmlg_any)(const struct lga_row_gmlg *row);
+    uint64_t (*admit)(const struct lga_row_admit *row);
+    uint64_t (*arrive)(const struct lga_row_arrive *row);
 };
 
 /* lga_bits_sand.c: the sandpile before its rows are streamed. */
@@ -93,6 +147,10 @@ bool lga_bits_sand_allocate(struct lga *lga);
 uint64_t lga_bits_sand_stop(struct lga *lga, const struct lga_kernel *kernel);
 void lga_bits_sand_fall(const struct lga *lga, const struct lga_kernel *kernel, uint32_t row,
                         uint64_t *out, uint64_t *scratch);
+
+/* lga_bits_gmlg.c */
+bool lga_bits_gmlg_allocate(struct lga *lga);
+void lga_bits_gmlg_step(struct lga *lga, const struct lga_kernel *kernel);
 
 bool lga_bits_allocate(struct lga *lga);
 void lga_bits_step(struct lga *lga);
@@ -104,11 +162,14 @@ void lga_bits_rasterise(struct lga *lga, double t);     /* all that from the sce
 
 struct lga_node lga_bits_node(const struct lga *lga, uint32_t site);
 uint64_t *lga_bits_row(const struct lga *lga, uint32_t row);    /* its first plane */
+void lga_bits_trim(const struct lga *lga, uint32_t row);    /* clears what is behind the columns */
+uint32_t lga_bits_band(const struct lga *lga, uint32_t band);   /* its first row */
+int lga_bits_shift(uint32_t row, int direction);    /* columns to the neighbour there */
 uint64_t *lga_bits_wall(const struct lga *lga, uint32_t row);   /* with margins */
 void lga_bits_join(const struct lga *lga, uint64_t *row);       /* fills the margins of a row */
 void lga_bits_set(struct lga *lga, uint32_t site, unsigned moving, unsigned rest);
 
-/* How many grains each plane of a row holds. */
+/* How many grains of a row fly in each direction, and how many rest. */
 void lga_bits_sum(const struct lga *lga, uint32_t row, uint64_t sum[LGA_PLANES]);
 
 #endif

@@ -32,11 +32,35 @@ struct lga_die lga_dice_die(double probability)
     return (struct lga_die){probability > 0.5, 0};
 }
 
+static struct lga_dice dice_of_gmlg(const struct lga_rule *rule)
+{
+    struct lga_dice dice = {0};
+    dice.of[LGA_DIE_SIDE] = lga_dice_die(0.5);
+    dice.of[LGA_DIE_KICK] = lga_dice_die(rule->gain);
+    dice.of[LGA_DIE_LOSS] = lga_dice_die(rule->inelastic);
+    dice.of[LGA_DIE_WAY_THIRD] = lga_dice_die(1 / 3.0);
+    dice.of[LGA_DIE_WAY_SIDE] = lga_dice_die(0.5);
+    for (int d = 0; d < LGA_DIRECTIONS; d++) {
+        dice.of[LGA_DIE_STOP + d] = lga_dice_die(rule->wall_stop);
+    }
+    if (!rule->gravity) return dice;
+    dice.of[LGA_DIE_FALL] = dice.of[LGA_DIE_BEND] = lga_dice_die(rule->fall);
+    dice.of[LGA_DIE_FALL_SIDE] = lga_dice_die(0.5);
+    if (!rule->vertical) dice.of[LGA_DIE_BEND_SIDE] = lga_dice_die(0.5);
+    dice.of[LGA_DIE_FRICTION_LEFT] = lga_dice_die(rule->friction);
+    dice.of[LGA_DIE_FRICTION_RIGHT] = lga_dice_die(rule->friction);
+    dice.of[LGA_DIE_PICK_THIRD] = dice.of[LGA_DIE_ADMIT_THIRD] = lga_dice_die(1 / 3.0);
+    dice.of[LGA_DIE_PICK_FIFTH] = dice.of[LGA_DIE_ADMIT_FIFTH] = lga_dice_die(1 / 5.0);
+    dice.of[LGA_DIE_PICK_COIN] = dice.of[LGA_DIE_PICK_SECOND] = lga_dice_die(0.5);
+    for (int k = 0; k < 6; k++) dice.of[LGA_DIE_ADMIT_COIN + k] = lga_dice_die(0.5);
+    return dice;
+}
+
 struct lga_dice lga_dice_of(const struct lga_rule *rule)
 {
     struct lga_dice dice = {0};
     const bool sandpile = rule->method == LGA_SANDPILE, gravity = rule->gravity;
-    if (rule->method == LGA_GMLG) return dice;
+    if (rule->method == LGA_GMLG) return dice_of_gmlg(rule);
     dice.of[LGA_DIE_SIDE] = lga_dice_die(0.5);
     dice.of[LGA_DIE_KICK] = lga_dice_die(rule->gain * (1 - rule->loss));
     if (sandpile) dice.of[LGA_DIE_LOSS] = lga_dice_die(rule->loss);
@@ -62,9 +86,21 @@ uint64_t lga_dice_key(struct lga_dice_source source)
     return rng_keyed(source.seed, source.tick, source.row, source.stage);
 }
 
-uint32_t lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind)
+uint64_t lga_dice_now(const struct lga *lga, uint32_t row, enum lga_stage stage)
 {
-    return rule->method == LGA_SANDPILE && kind >= LGA_DIE_FALL;
+    const bool frozen = stage == LGA_STAGE_FRICTION && lga->rule.frozen;
+    return lga_dice_key((struct lga_dice_source){lga->seed, frozen ? UINT64_MAX - 2 : lga->ticks,
+                                                 row, stage});
+}
+
+enum lga_stage lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind)
+{
+    if (kind >= LGA_DIE_STOP) return LGA_STAGE_STOP;
+    if (kind >= LGA_DIE_ADMIT_THIRD) return LGA_STAGE_ADMIT;
+    if (kind >= LGA_DIE_WAY_THIRD) return LGA_STAGE_WAYS;
+    if (kind >= LGA_DIE_FRICTION_LEFT) return LGA_STAGE_FRICTION;
+    return rule->method == LGA_SANDPILE && kind >= LGA_DIE_FALL ? LGA_STAGE_FALL
+                                                                : LGA_STAGE_COLLIDE;
 }
 
 enum lga_simd lga_dice_simd(void)

@@ -1,35 +1,20 @@
-/* lga_gmlg.c - the gas with gravity and many rest grains: collide, fall, let in.
+/* lga_gmlg.c - the gas with gravity and many rest grains in the plain form: collide, fall, let in.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Every pass reads what the pass before wrote and writes only its own node, and every random
- * number has a name (seed, tick, site, draw), so the result depends neither on the order of the
- * loops nor on the number of threads.
+ * Every pass reads what the pass before wrote and writes only its own node, so the result depends
+ * neither on the order of the loops nor on the number of threads.
  *
  * How many grains a node holds changes in streaming only.  So `load`, counted at the start of the
  * tick, tells in every later pass whether a node is full.
  */
 #include "model/lga/lga.h"
 
-#include "base/rng.h"
+#include <assert.h>
 
-#include <math.h>
-
-/* The random numbers of a node in a tick; those of one direction follow each other. */
-enum draw {
-    DRAW_COLUMN, DRAW_OUTCOME, DRAW_GAIN, DRAW_FALL, DRAW_SIDE, DRAW_FRICTION, DRAW_TURN,
-    DRAW_MOVER, DRAW_TURN_SIDE, DRAW_ADMIT
-};
-
-static double draw(const struct lga *lga, uint32_t site, int which)
+static bool die(const struct lga *lga, uint32_t site, enum lga_die_kind kind)
 {
-    return rng_unit(rng_keyed(lga->seed, lga->ticks, site, (uint64_t)which));
-}
-
-static bool chance(const struct lga *lga, uint32_t site, int which, double probability)
-{
-    if (probability <= 0) return false;
-    return probability >= 1 || draw(lga, site, which) < probability;
+    return lga_plain_die(lga, kind, site);
 }
 
 static unsigned bit(int direction) { return 1u << direction; }
@@ -41,20 +26,31 @@ static bool is_full(const struct lga *lga, uint32_t site)
         || (lga->kind[site] == LGA_FLUID && lga->load[site] >= LGA_ROOM);
 }
 
+/* 0, 1 or 2, alike. */
+static int one_of_three(bool third, bool coin) { return third ? 0 : coin ? 1 : 2; }
+
+/* Which outcome of its collision a node takes: of three or six the way in which pairs stop comes
+ * first, then the way in which what they leave merges. */
+static int outcome_of(const struct lga *lga, uint32_t site, int count)
+{
+    const int second = !die(lga, site, LGA_DIE_SIDE);
+    if (count <= 2) return count == 2 ? second : 0;
+    assert(count % 3 == 0);
+    const int way = one_of_three(die(lga, site, LGA_DIE_WAY_THIRD),
+                                 die(lga, site, LGA_DIE_WAY_SIDE));
+    return count == 3 ? way : 2 * way + second;
+}
+
 /* Replaces (moving, rest) of a node by one of the outcomes of its collision. */
 static bool collide(struct lga *lga, uint32_t site)
 {
     const unsigned moving = lga->moving[site], rest = lga->rest[site];
     if (moving == 0) return false;
-    const enum lga_column column = chance(lga, site, DRAW_COLUMN, lga->rule.inelastic);
+    const enum lga_column column = die(lga, site, LGA_DIE_LOSS) ? LGA_INELASTIC : LGA_ELASTIC;
     const struct lga_case *entry = &lga->table->cases[column][moving][rest];
     if (entry->count == 0) return false;
-    const struct lga_outcome *outcome = entry->outcome;
-    if (entry->count > 1) {
-        int left = (int)(LGA_WEIGHT * draw(lga, site, DRAW_OUTCOME));
-        while (left >= outcome->weight) left -= outcome++->weight;
-    }
-    if (outcome->rest < rest && !chance(lga, site, DRAW_GAIN, lga->rule.gain)) return false;
+    const struct lga_outcome *outcome = &entry->outcome[outcome_of(lga, site, entry->count)];
+    if (outcome->rest < rest && !die(lga, site, LGA_DIE_KICK)) return false;
     lga->moving[site] = outcome->moving;
     lga->rest[site] = outcome->rest;
     return true;
@@ -65,9 +61,9 @@ static bool collide(struct lga *lga, uint32_t site)
  * and rolls to one of two sides if that is full. */
 static void fall(struct lga *lga, uint32_t site)
 {
-    if (lga->rest[site] == 0 || !chance(lga, site, DRAW_FALL, lga->rule.fall)) return;
+    if (lga->rest[site] == 0 || !die(lga, site, LGA_DIE_FALL)) return;
     const uint32_t *beside = lga->beside[site];
-    const bool left = draw(lga, site, DRAW_SIDE) < 0.5;
+    const bool left = die(lga, site, LGA_DIE_FALL_SIDE);
     int direction;
     bool rolls;
     if (lga->rule.vertical) {
@@ -78,9 +74,35 @@ static void fall(struct lga *lga, uint32_t site)
         rolls = is_full(lga, beside[left ? 5 : 4]);
     }
     if (is_full(lga, beside[direction]) || lga->moving[site] & bit(direction)) return;
-    if (rolls && !lga->hit[site] && chance(lga, site, DRAW_FRICTION, lga->rule.friction)) return;
+    const bool kept = die(lga, site, left ? LGA_DIE_FRICTION_LEFT : LGA_DIE_FRICTION_RIGHT);
+    if (rolls && kept && !lga->hit[site]) return;
     lga->rest[site]--;
     lga->moving[site] |= (uint8_t)bit(direction);
+}
+
+/* The rank of one of `count` things, all with equal chance. */
+struct pick { bool third, fifth, coin, second; };
+
+static int pick(int count, struct pick dice)
+{
+    const int of_four = 2 * dice.coin + dice.second;
+    switch (count) {
+    case 1: return 0;
+    case 2: return dice.coin;
+    case 3: return one_of_three(dice.third, dice.coin);
+    case 4: return of_four;
+    case 5: return dice.fifth ? 4 : of_four;
+    default: assert(count == 6);
+    }
+    return 2 * one_of_three(dice.third, dice.coin) + dice.second;
+}
+
+/* The direction of that rank in a set. */
+static int member(unsigned set, int rank)
+{
+    int d = 0;
+    while (!(set & bit(d)) || rank-- > 0) d++;
+    return d;
 }
 
 /* Gravity on one mover of the node, any of them: its path bends down.  H: 4 and 5 are drawn anew,
@@ -88,15 +110,36 @@ static void fall(struct lga *lga, uint32_t site)
 static void bend(struct lga *lga, uint32_t site)
 {
     static const int down_vertical[LGA_DIRECTIONS] = {3, 2, 3, 3, 3, 4};
-    static const int down_horizontal[LGA_DIRECTIONS] = {5, 5, 4, 4, -1, -1};
+    static const int down_level[LGA_DIRECTIONS] = {5, 5, 4, 4, -1, -1};
     const unsigned moving = lga->moving[site];
-    if (moving == 0 || !chance(lga, site, DRAW_TURN, lga->rule.fall)) return;
-    int left = (int)(draw(lga, site, DRAW_MOVER) * __builtin_popcount(moving)), from = 0;
-    while (!(moving & bit(from)) || left-- > 0) from++;
-    int to = lga->rule.vertical ? down_vertical[from] : down_horizontal[from];
-    if (to < 0) to = draw(lga, site, DRAW_TURN_SIDE) < 0.5 ? 4 : 5;
+    if (moving == 0 || !die(lga, site, LGA_DIE_BEND)) return;
+    const struct pick dice = {die(lga, site, LGA_DIE_PICK_THIRD),
+        die(lga, site, LGA_DIE_PICK_FIFTH), die(lga, site, LGA_DIE_PICK_COIN),
+        die(lga, site, LGA_DIE_PICK_SECOND)};
+    const int from = member(moving, pick(__builtin_popcount(moving), dice));
+    int to = lga->rule.vertical ? down_vertical[from] : down_level[from];
+    if (to < 0) to = die(lga, site, LGA_DIE_BEND_SIDE) ? 4 : 5;
     if (moving & bit(to) || is_full(lga, lga->beside[site][to])) return;
     lga->moving[site] = (uint8_t)((moving & ~bit(from)) | bit(to));
+}
+
+/* As many of the waiting as there is room for, any of them: either those who may come are picked,
+ * or those who may not, whichever are fewer.  They are three at most; the third is one of four, and
+ * the second shares no die with the first that the first has used. */
+static unsigned let_in(const struct lga *lga, uint32_t site, unsigned waiting, int room)
+{
+    const int excess = __builtin_popcount(waiting) - room;
+    if (excess <= 0) return waiting;
+    const bool refuse = room > excess;
+    const int picks = refuse ? excess : room;
+    unsigned left = waiting;
+    for (int k = 0; k < picks; k++) {
+        const struct pick dice = {die(lga, site, LGA_DIE_ADMIT_THIRD),
+            die(lga, site, LGA_DIE_ADMIT_FIFTH), die(lga, site, LGA_DIE_ADMIT_COIN + 2 * k),
+            die(lga, site, LGA_DIE_ADMIT_COIN + 2 * k + 1)};
+        left &= ~bit(member(left, pick(__builtin_popcount(left), dice)));
+    }
+    return refuse ? left : waiting & ~left;
 }
 
 /* Which of the movers that point here may come.  Two that meet head-on on a link always swap; of
@@ -111,24 +154,15 @@ static unsigned admit(const struct lga *lga, uint32_t site)
         if (lga->moving[site] & bit(reverse(d))) swapping |= bit(d);
     }
     if (!lga->rule.gravity) return arriving;
-    int waiting = __builtin_popcount(arriving & ~swapping);
-    int room = LGA_ROOM - lga->load[site];
-    if (waiting <= room) return arriving;
-    unsigned admitted = swapping;
-    for (int d = 0; d < LGA_DIRECTIONS && room > 0; d++) {
-        if (!(arriving & ~swapping & bit(d))) continue;
-        if (draw(lga, site, DRAW_ADMIT + d) * waiting-- < room) {
-            admitted |= bit(d);
-            room--;
-        }
-    }
-    return admitted;
+    const int room = lga->load[site] < LGA_ROOM ? LGA_ROOM - lga->load[site] : 0;
+    return swapping | let_in(lga, site, arriving & ~swapping, room);
 }
 
 void lga_gmlg_collide(struct lga *lga)
 {
     const uint32_t sites = lga->sites;
     uint64_t collisions = 0;
+    lga_plain_roll(lga);
     #pragma omp parallel for if (sites >= LGA_LOOP_MIN)
     for (uint32_t n = 0; n < sites; n++) {
         lga->load[n] = (uint8_t)(lga->rest[n] + __builtin_popcount(lga->moving[n]));

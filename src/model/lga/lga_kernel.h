@@ -87,12 +87,12 @@ INLINE uint64_t N(count)(vec bits)
     return sum;
 }
 
-/* Collides the movers m and the rest grains *rest of a vector of nodes; the table is that of
- * lga_table.c as logic.  Returns which nodes have changed. */
-INLINE vec N(collide)(vec m[6], vec *rest, vec side, vec kick)
+/* Collides the movers m of a vector of nodes without loss; the table is that of lga_table.c as
+ * logic.  Rest grains are kicked up where they can, *splits, and added where there is room,
+ * *merges.  Returns which nodes have changed. */
+INLINE vec N(scatter)(vec m[6], vec can_split, vec can_merge, vec side, vec *splits, vec *merges)
 {
     vec alone[6], none[3], both[3], turn[6];
-    const vec r = *rest;
     for (int i = 0; i < 3; i++) {
         alone[i] = m[i] & ~m[i + 3];
         alone[i + 3] = m[i + 3] & ~m[i];
@@ -101,13 +101,15 @@ INLINE vec N(collide)(vec m[6], vec *rest, vec side, vec kick)
     }
     const vec triple = (alone[0] & alone[2] & alone[4]) | (alone[1] & alone[3] & alone[5]);
     for (int i = 0; i < 3; i++) both[i] &= none[(i + 1) % 3] & none[(i + 2) % 3];
-    vec changed = triple, kicked = {0};
+    vec changed = triple;
+    *splits = *merges = (vec){0};
     for (int i = 0; i < 6; i++) {
         /* {i} with a rest grain -> {i-1, i+1} without, and its inverse */
-        const vec splits = alone[i] & none[(i + 1) % 3] & none[(i + 2) % 3] & r & kick;
-        const vec merges = alone[(i + 5) % 6] & alone[(i + 1) % 6] & none[i % 3] & ~r;
-        turn[i] = splits | merges;
-        kicked |= turn[i];
+        const vec split = alone[i] & none[(i + 1) % 3] & none[(i + 2) % 3] & can_split;
+        const vec merge = alone[(i + 5) % 6] & alone[(i + 1) % 6] & none[i % 3] & can_merge;
+        turn[i] = split | merge;
+        *splits |= split;
+        *merges |= merge;
     }
     vec flip[3];
     for (int i = 0; i < 3; i++) {
@@ -117,8 +119,16 @@ INLINE vec N(collide)(vec m[6], vec *rest, vec side, vec kick)
     for (int i = 0; i < 6; i++) {
         m[i] ^= flip[i % 3] | turn[(i + 5) % 6] | turn[i] | turn[(i + 1) % 6];
     }
-    *rest = r ^ kicked;
-    return changed | kicked;
+    return changed | *splits | *merges;
+}
+
+/* The same for at most one rest grain a node. */
+INLINE vec N(collide)(vec m[6], vec *rest, vec side, vec kick)
+{
+    vec splits, merges;
+    const vec changed = N(scatter)(m, *rest & kick, ~*rest, side, &splits, &merges);
+    *rest ^= splits | merges;
+    return changed;
 }
 
 /* Gravity, where `falls`: movers that rise turn down and keep their momentum along x, and a rest
@@ -296,6 +306,8 @@ KERNEL_TARGET static void N(fall_row)(const struct lga_row_fall *row)
     }
 }
 
+#include "model/lga/lga_kernel_gmlg.h"
+
 #define INSTANCE(kind, e) \
     KERNEL_TARGET static uint64_t N(kind##_##e)(const struct lga_row_##kind *row) \
     { return N(kind##_effects)(row, e); }
@@ -310,11 +322,28 @@ KERNEL_TARGET static uint64_t N(stream_any)(const struct lga_row_stream *row)
 {
     return N(stream_effects)(row, row->effects);
 }
+KERNEL_TARGET static uint64_t N(gmlg_free)(const struct lga_row_gmlg *row)
+{
+    return N(gmlg_effects)(row, LGA_BITS_TIGHT);
+}
+KERNEL_TARGET static uint64_t N(gmlg_level)(const struct lga_row_gmlg *row)
+{
+    return N(gmlg_effects)(row, LGA_BITS_GRAVITY);
+}
+KERNEL_TARGET static uint64_t N(gmlg_vertical)(const struct lga_row_gmlg *row)
+{
+    return N(gmlg_effects)(row, LGA_BITS_GRAVITY | LGA_BITS_VERTICAL);
+}
+KERNEL_TARGET static uint64_t N(gmlg_any)(const struct lga_row_gmlg *row)
+{
+    return N(gmlg_effects)(row, row->effects);
+}
 
 static const struct lga_kernel N(kernel) = {
     N(roll_row), {N(collide_0), N(collide_1), N(collide_2), N(collide_3)}, N(collide_any),
     {N(stream_0), N(stream_4)}, N(stream_any),
-    N(stop), N(fall_row)
+    N(stop), N(fall_row),
+    N(survey), N(gmlg_free), N(gmlg_level), N(gmlg_vertical), N(gmlg_any), N(admit), N(arrive)
 };
 
 #undef INSTANCE

@@ -17,42 +17,17 @@ enum { DRAW_MOVER = 64 };
 
 static unsigned bit(int direction) { return 1u << direction; }
 
-bool lga_sand_die(const struct lga *lga, enum lga_die_kind kind, uint32_t site)
-{
-    const uint64_t *bits = lga->rolled[kind];
-    if (!bits) return lga->dice.of[kind].threshold;
-    const uint32_t row = site / lga->lattice.columns, x = site % lga->lattice.columns;
-    return bits[(size_t)row * lga->words + x % lga->words] >> (x / lga->words) & 1;
-}
-
-static void roll(struct lga *lga)
-{
-    const uint32_t rows = lga->lattice.rows;
-    #pragma omp parallel for if (lga->sites >= LGA_LOOP_MIN)
-    for (uint32_t row = 0; row < rows; row++) {
-        for (uint32_t stage = 0; stage < 2; stage++) {
-            uint64_t *out[LGA_DICE] = {NULL};
-            for (uint32_t k = 0; k < LGA_DICE; k++) {
-                if (!lga->rolled[k] || lga_dice_stage(&lga->rule, k) != stage) continue;
-                out[k] = lga->rolled[k] + (size_t)row * lga->words;
-            }
-            const struct lga_dice_source source = {lga->seed, lga->ticks, row, stage};
-            lga_bits_roll(&lga->dice, lga->simd, lga_dice_key(source), lga->words, out);
-        }
-    }
-}
-
 /* Replaces (moving, rest) of a node by the outcome of its collision. */
 static bool collide(struct lga *lga, uint32_t site)
 {
     const unsigned moving = lga->moving[site], rest = lga->rest[site];
     assert(rest <= 1);
-    const bool loss = lga_sand_die(lga, LGA_DIE_LOSS, site);
+    const bool loss = lga_plain_die(lga, LGA_DIE_LOSS, site);
     const struct lga_case *entry = &lga->table->sand[loss][moving][rest];
     if (entry->count == 0) return false;
-    const bool second = entry->count > 1 && !lga_sand_die(lga, LGA_DIE_SIDE, site);
+    const bool second = entry->count > 1 && !lga_plain_die(lga, LGA_DIE_SIDE, site);
     const struct lga_outcome *outcome = &entry->outcome[second];
-    if (outcome->rest < rest && !lga_sand_die(lga, LGA_DIE_KICK, site)) return false;
+    if (outcome->rest < rest && !lga_plain_die(lga, LGA_DIE_KICK, site)) return false;
     lga->moving[site] = outcome->moving;
     lga->rest[site] = outcome->rest;
     return true;
@@ -80,14 +55,14 @@ static void spread_row(struct lga *lga, uint32_t row)
 
 static int downward(const struct lga *lga, enum lga_die_kind kind, uint32_t site)
 {
-    return lga_sand_die(lga, kind, site) ? 4 : 5;
+    return lga_plain_die(lga, kind, site) ? 4 : 5;
 }
 
 /* FHP-II: movers that rise turn down and keep their momentum along x; a rest grain starts down. */
 static void fall_gas(struct lga *lga, uint32_t site)
 {
     unsigned moving = lga->moving[site];
-    if (!lga_sand_die(lga, LGA_DIE_FALL, site)) return;
+    if (!lga_plain_die(lga, LGA_DIE_FALL, site)) return;
     if ((moving & bit(1)) && !(moving & bit(5))) moving ^= bit(1) | bit(5);
     if ((moving & bit(2)) && !(moving & bit(4))) moving ^= bit(2) | bit(4);
     const int d = downward(lga, LGA_DIE_FALL_SIDE, site);
@@ -103,7 +78,7 @@ enum { LOAD_RESTS = 1, LOAD_MOVES = 2 };        /* what `load` tells of a node h
 /* Sandpile: a rest grain starts down if the node there has none. */
 static void fall_sand(struct lga *lga, uint32_t site)
 {
-    if (!lga->rest[site] || !lga_sand_die(lga, LGA_DIE_FALL, site)) return;
+    if (!lga->rest[site] || !lga_plain_die(lga, LGA_DIE_FALL, site)) return;
     const int d = downward(lga, LGA_DIE_FALL_SIDE, site);
     const uint32_t to = lga->beside[site][d];
     const unsigned forbidden = lga->rule.strict ? LOAD_RESTS | LOAD_MOVES : LOAD_RESTS;
@@ -127,9 +102,9 @@ int lga_sand_bend(const struct lga *lga, uint32_t site, unsigned moving, bool le
 static void bend_sand(struct lga *lga, uint32_t site)
 {
     const unsigned moving = lga->moving[site];
-    if (moving == 0 || !lga_sand_die(lga, LGA_DIE_BEND, site)) return;
+    if (moving == 0 || !lga_plain_die(lga, LGA_DIE_BEND, site)) return;
     int from;
-    const bool left = lga_sand_die(lga, LGA_DIE_BEND_SIDE, site);
+    const bool left = lga_plain_die(lga, LGA_DIE_BEND_SIDE, site);
     const int to = lga_sand_bend(lga, site, moving, left, &from);
     const uint32_t below = lga->beside[site][to];
     if (lga->kind[below] == LGA_FLUID && lga->load[below] & LOAD_RESTS) return;
@@ -153,7 +128,7 @@ void lga_sand_collide(struct lga *lga)
     const uint32_t sites = lga->sites;
     const bool sandpile = lga->rule.method == LGA_SANDPILE;
     uint64_t collisions = 0;
-    roll(lga);
+    lga_plain_roll(lga);
     #pragma omp parallel for reduction(+ : collisions) if (sites >= LGA_LOOP_MIN)
     for (uint32_t n = 0; n < sites; n++) {
         if (lga->kind[n] == LGA_FLUID && lga->moving[n]) collisions += collide(lga, n);
@@ -198,10 +173,5 @@ void lga_sand_settle(struct lga *lga)
 
 bool lga_sand_allocate(struct lga *lga)
 {
-    const size_t words = (size_t)lga->lattice.rows * lga->words;
-    for (int k = 0; k < LGA_DICE; k++) {
-        const bool open = lga->dice.of[k].bits > 0;
-        if (!arena_array(&lga->arena, &lga->rolled[k], open ? words : 0)) return false;
-    }
     return arena_array(&lga->arena, &lga->heap, lga->rule.heap ? lga->sites : 0);
 }

@@ -8,11 +8,7 @@
  */
 #include "model/lga/lga_bits.h"
 
-#include "base/rng.h"
-
 #include <assert.h>
-
-enum { DRAW_STOP = 32 };                /* past the draws of the rules */
 
 static unsigned bit(int direction) { return 1u << direction; }
 static int reverse(int direction) { return (direction + 3) % LGA_DIRECTIONS; }
@@ -43,13 +39,10 @@ struct streamed { uint64_t left, refused; };
 /* A grain that cannot leave its node in direction d stops there, or not. */
 static bool stops(struct lga *lga, uint32_t site, int d, unsigned rest)
 {
-    const double stop = lga->rule.wall_stop;
     if (lga->rule.method == LGA_GMLG) {
-        if (rest >= LGA_ROOM || stop <= 0) return false;
-        const uint64_t draw = DRAW_STOP + (uint64_t)d;
-        return stop >= 1 || rng_unit(rng_keyed(lga->seed, lga->ticks, site, draw)) < stop;
+        return rest < LGA_ROOM && lga_plain_die(lga, LGA_DIE_STOP + d, site);
     }
-    if (!lga->heap || d < 4 || !lga_sand_die(lga, LGA_DIE_PLATE, site)) return false;
+    if (!lga->heap || d < 4 || !lga_plain_die(lga, LGA_DIE_PLATE, site)) return false;
     lga->heap[site] = true;
     return true;
 }
@@ -84,7 +77,7 @@ static struct streamed stream(struct lga *lga, uint32_t site)
     }
     if (stuck && lga->rule.method != LGA_GMLG) {
         const bool plate = lga->heap && blocked == (bit(4) | bit(5));
-        if (plate || lga_sand_die(lga, LGA_DIE_MIRROR, site)) {
+        if (plate || lga_plain_die(lga, LGA_DIE_MIRROR, site)) {
             next = lga_step_mirrored(blocked, stuck, next);
         }
     }
@@ -154,12 +147,12 @@ static bool allocate_plain(struct lga *lga)
         && arena_array(arena, &lga->beside, lga->sites);
     if (!done) return false;
     lga_lattice_join(&lga->lattice, lga->beside);
-    return gmlg || lga_sand_allocate(lga);
+    return lga_plain_allocate(lga) && (gmlg || lga_sand_allocate(lga));
 }
 
 bool lga_step_is_fast(const struct lga_rule *rule)
 {
-    return rule->method == LGA_FHP2 || (rule->method == LGA_SANDPILE && !rule->heap);
+    return rule->method != LGA_SANDPILE || !rule->heap;
 }
 
 bool lga_step_allocate(struct lga *lga)

@@ -197,6 +197,26 @@ static void archive_time(struct md *md, struct archive *archive)
     if (dt != md->dt) md_step_rescale(md, dt);
 }
 
+/* The leapfrog's velocities lie half a step apart; both gain the same.  The list of neighbours
+ * holds for as long as nobody moves farther than it knows of, so it hears of the new speeds. */
+static void md_push(void *state, const struct impulse *impulse)
+{
+    struct md *md = state;
+    double fastest = 0;
+    for (uint32_t i = 0; i < md->count; i++) {
+        struct grain *g = &md->grains[i];
+        struct half *h = &md->halves[i];
+        const double share = impulse_share(impulse, g->x, g->y);
+        if (share == 0) continue;
+        g->ux += share * impulse->vx;
+        g->uy += share * impulse->vy;
+        h->hx += share * impulse->vx;
+        h->hy += share * impulse->vy;
+        fastest = fmax(fastest, hypot(h->hx, h->hy));
+    }
+    md->stride = fmax(md->stride, fastest * md->dt);
+}
+
 static void md_archive(void *state, struct archive *archive)
 {
     struct md *md = state;
@@ -210,7 +230,7 @@ static void md_archive(void *state, struct archive *archive)
     archive_value(archive, "md.window", &md->window);
     archive_time(md, archive);
     archive_list(md, archive);
-    archive_array(archive, "md.cursors", md->cursors, md->scene->source_count);
+    source_archive(md->scene, md->cursors, archive);
     archive_value(archive, "md.retry_step", &md->retry_step);
     uint64_t *const totals[] = {&md->begun, &md->tangential, &md->rebuilds, &md->grains_in,
                                 &md->grains_out, &md->rejected};
@@ -257,6 +277,7 @@ const struct model model_md = {
     .destroy  = md_destroy,
     .advance  = md_advance,
     .observe  = md_look_observe,
+    .push     = md_push,
     .archive  = md_archive,
     .count    = md_look_count,
     .tally    = md_tally,

@@ -31,6 +31,26 @@ static bool blame_number(struct md *md)
     return true;
 }
 
+/* A grain that goes further than a radius in a step can be on the other side of a wall or of a
+ * grain without ever having touched it, and nothing else would tell. */
+static bool blame_speed(struct md *md)
+{
+    uint32_t fastest = 0;
+    double most = -1;
+    for (uint32_t i = 0; i < md->count; i++) {
+        const double speed = hypot(md->grains[i].ux, md->grains[i].uy);
+        if (speed > most) fastest = i;
+        most = fmax(most, speed);
+    }
+    blame(md, fastest);
+    snprintf(md->fault.text, sizeof md->fault.text, "t = %g: grain %u at (%.6g, %.6g) goes %.3g of "
+             "the smallest radius in a time step at speed %.4g (walls: %.4g) and may pass others "
+             "unseen; make md.dt = %g smaller, or delete it and set md.speed", md->fault.time,
+             md->fault.grain, md->fault.x, md->fault.y, md->stride / md->scene->radius_min, most,
+             md->wall_speed, md->dt);
+    return false;
+}
+
 /* Where the grain was when the last forces were computed. */
 static void place_before(const struct md *md, uint32_t i, double *x, double *y)
 {
@@ -83,8 +103,8 @@ static bool check_overlaps(struct md *md)
 bool md_fault_check(struct md *md)
 {
     if (md->broken) return blame_number(md) && false;
-    if (md->suspects == 0) return true;
-    return check_overlaps(md);
+    if (md->suspects > 0 && !check_overlaps(md)) return false;
+    return md->stride <= md->scene->radius_min || blame_speed(md);
 }
 
 bool md_fault_escaped(struct md *md)

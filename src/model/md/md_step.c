@@ -241,7 +241,7 @@ static void add_sums(struct md *md)
 bool md_step_take(struct md *md)
 {
     if (md->gears) md->steps_here++;                            /* Gear: forces at the new time */
-    if (md->walls_vary) md_walls_place(md);
+    if (md->walls_vary && md->gears) md_walls_place(md);
     const uint32_t strips = md->strip_count;
 #pragma omp parallel num_threads(md->thread_count) if (strips > 1)
     {
@@ -259,7 +259,10 @@ bool md_step_take(struct md *md)
     if (!md->gears) md->steps_here++;
     md->steps++;
     add_sums(md);
-    return md_fault_check(md);
+    if (!md_fault_check(md)) return false;
+    /* Walls stand where the grains are, for the next forces and for whoever looks before them. */
+    if (md->walls_vary && !md->gears) md_walls_place(md);
+    return true;
 }
 
 void md_step_rescale(struct md *md, double dt_before)

@@ -1,0 +1,236 @@
+/* lga_bits_gmlg.c - the GMLG in planes of bits, row by row.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Four passes follow each other a row apart, so that all of them work in the cache: a row is
+ * surveyed (which nodes are full?) before its neighbours collide and fall, they before it is known
+ * who is let in, and that before grains stream.  A row in its place is needed last by the survey,
+ * three rows ahead of the streaming that overwrites it.  Bands of rows go to threads: each first
+ * makes copies of the two rows below and above it, collided, while all rows are as they were.
+ */
+#include "model/lga/lga_bits.h"
+
+#include <assert.h>
+
+/* Planes of a row on its way: six directions, three bits of rest grains, three of room, full. */
+enum { PLANE_ROOM = LGA_GMLG_PLANES, PLANE_FULL = PLANE_ROOM + 3, PLANES };
+
+/* Rows of a band on their way: those four that are needed at once, and two copies at each end.
+ * Then the admissions of three rows, six planes each. */
+enum { AT_ONCE = 4, HALO = 2, SLOTS = AT_ONCE + 2 * HALO, ADMITTED = 3 };
+
+struct band {
+    const struct lga *lga;
+    const struct lga_kernel *kernel;
+    uint64_t *slots, *admitted;
+    int64_t  first, rows;               /* of the lattice; in the band */
+    uint64_t collisions, refused, gone;
+};
+
+static size_t slot_words(const struct lga_bits *bits) { return (size_t)PLANES * bits->stride; }
+
+static size_t admitted_words(const struct lga_bits *bits)
+{
+    return (size_t)LGA_DIRECTIONS * bits->stride;
+}
+
+static size_t band_words(const struct lga_bits *bits)
+{
+    return SLOTS * slot_words(bits) + ADMITTED * admitted_words(bits);
+}
+
+bool lga_bits_gmlg_allocate(struct lga *lga)
+{
+    struct lga_bits *bits = lga->bits;
+    if (!arena_array(&lga->arena, &bits->rings, bits->bands * band_words(bits))
+        || !arena_array(&lga->arena, &bits->real, bits->words)) return false;
+    for (uint32_t x = 0; x < lga->lattice.columns; x++) {
+        bits->real[x % bits->words] |= 1ull << x / bits->words;
+    }
+    return true;
+}
+
+static struct band band_of(const struct lga *lga, const struct lga_kernel *kernel, uint32_t number)
+{
+    const struct lga_bits *bits = lga->bits;
+    uint64_t *words = bits->rings + number * band_words(bits) + LGA_LANES;
+    const int64_t first = lga_bits_band(lga, number);
+    return (struct band){.lga = lga, .kernel = kernel, .slots = words,
+        .admitted = words + SLOTS * slot_words(bits), .first = first,
+        .rows = (int64_t)lga_bits_band(lga, number + 1) - first};
+}
+
+/* Row k of a band, -2 .. rows + 1, as a row of the lattice. */
+static uint32_t row_of(const struct band *band, int64_t k)
+{
+    const int64_t rows = band->lga->lattice.rows;
+    return (uint32_t)(((band->first + k) % rows + rows) % rows);
+}
+
+/* The place where row k is kept on its way. */
+static uint64_t *slot(const struct band *band, int64_t k)
+{
+    const int64_t index = k < 0 ? AT_ONCE + HALO + k
+                        : k >= band->rows ? AT_ONCE + HALO + (k - band->rows) : k % AT_ONCE;
+    assert(index >= 0);
+    assert(index < SLOTS);
+    return band->slots + (size_t)index * slot_words(band->lga->bits);
+}
+
+static uint64_t *admitted(const struct band *band, int64_t k)
+{
+    return band->admitted + (size_t)((k + ADMITTED) % ADMITTED) * admitted_words(band->lga->bits);
+}
+
+static const uint64_t *sink_row(const struct lga_bits *bits, uint32_t row)
+{
+    return bits->sink ? bits->sink + (size_t)row * bits->words : NULL;
+}
+
+static void survey(const struct band *band, uint32_t row, uint64_t *out)
+{
+    const struct lga *lga = band->lga;
+    const struct lga_bits *bits = lga->bits;
+    band->kernel->survey(&(struct lga_row_survey){
+        .words = bits->words, .stride = bits->stride, .planes = lga_bits_row(lga, row),
+        .wall = lga_bits_wall(lga, row), .sink = sink_row(bits, row),
+        .room = out + PLANE_ROOM * bits->stride, .full = out + PLANE_FULL * bits->stride
+    });
+    lga_bits_join(lga, out + PLANE_FULL * bits->stride);
+}
+
+/* `near` are the places of the row below, of the row itself and of the row above. */
+static uint64_t collide(const struct band *band, uint32_t row, uint64_t *const near[3])
+{
+    static const int above[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
+    const struct lga *lga = band->lga;
+    const struct lga_bits *bits = lga->bits;
+    struct lga_row_gmlg pass = {
+        .words = bits->words, .stride = bits->stride, .held = lga->trapped, .dice = &lga->dice,
+        .in = lga_bits_row(lga, row), .wall = lga_bits_wall(lga, row), .out = near[1]
+    };
+    const bool gravity = lga->rule.gravity, vertical = lga->rule.vertical;
+    for (int stage = 0; stage < LGA_STAGES; stage++) {
+        pass.key[stage] = lga_dice_now(lga, row, (enum lga_stage)stage);
+    }
+    for (int d = 0; d < LGA_DIRECTIONS && gravity; d++) {
+        pass.full[d] = near[1 + above[d]] + PLANE_FULL * bits->stride + lga_bits_shift(row, d);
+    }
+    if (gravity) pass.effects |= LGA_BITS_GRAVITY;
+    if (vertical) pass.effects |= LGA_BITS_VERTICAL;
+    if (!gravity || lga->crowded) pass.effects |= LGA_BITS_TIGHT;
+    const struct lga_kernel *kernel = band->kernel;
+    const uint64_t collisions = !gravity ? kernel->gmlg_free(&pass)
+        : lga->crowded ? kernel->gmlg_any(&pass)
+        : vertical ? kernel->gmlg_vertical(&pass) : kernel->gmlg_level(&pass);
+    for (uint32_t d = 0; d < LGA_DIRECTIONS; d++) lga_bits_join(lga, near[1] + d * bits->stride);
+    return collisions;
+}
+
+static uint64_t admit(const struct band *band, int64_t k)
+{
+    static const int above[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
+    const struct lga *lga = band->lga;
+    const struct lga_bits *bits = lga->bits;
+    const uint32_t row = row_of(band, k);
+    uint64_t *out = admitted(band, k);
+    struct lga_row_admit pass = {
+        .words = bits->words, .stride = bits->stride, .crowds = lga->rule.gravity,
+        .key = lga_dice_now(lga, row, LGA_STAGE_ADMIT), .dice = &lga->dice,
+        .wall = lga_bits_wall(lga, row), .real = bits->real, .own = slot(band, k),
+        .room = slot(band, k) + PLANE_ROOM * bits->stride, .out = out
+    };
+    for (int d = 0; d < LGA_DIRECTIONS; d++) {
+        const int back = (d + 3) % LGA_DIRECTIONS;
+        pass.from[d] = slot(band, k + above[back]) + (uint32_t)d * bits->stride
+                     + lga_bits_shift(row, back);
+    }
+    const uint64_t refused = band->kernel->admit(&pass);
+    for (uint32_t d = 0; d < LGA_DIRECTIONS; d++) lga_bits_join(lga, out + d * bits->stride);
+    return refused;
+}
+
+static uint64_t arrive(const struct band *band, int64_t k)
+{
+    static const int above[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
+    const struct lga *lga = band->lga;
+    const struct lga_bits *bits = lga->bits;
+    const uint32_t row = row_of(band, k);
+    struct lga_row_arrive pass = {
+        .words = bits->words, .stride = bits->stride, .held = lga->trapped,
+        .blocks = lga->rule.gravity || bits->effects & LGA_BITS_WALLS,
+        .key = lga_dice_now(lga, row, LGA_STAGE_STOP), .dice = &lga->dice,
+        .wall = lga_bits_wall(lga, row), .sink = sink_row(bits, row), .own = slot(band, k),
+        .own_admitted = admitted(band, k), .out = lga_bits_row(lga, row)
+    };
+    for (int d = 0; d < LGA_DIRECTIONS; d++) {
+        pass.admitted[d] = admitted(band, k + above[d]) + (uint32_t)d * bits->stride
+                         + lga_bits_shift(row, d);
+    }
+    const uint64_t gone = band->kernel->arrive(&pass);
+    lga_bits_trim(lga, row);
+    return gone;
+}
+
+/* Rows -2, -1 and rows, rows + 1 of the band, collided.  Rows that they need but that are not kept
+ * go into places that are free yet. */
+static void prepare_ends(struct band *band)
+{
+    const int64_t starts[2] = {-HALO, band->rows};
+    for (int end = 0; end < 2; end++) {
+        uint64_t *place[HALO + 2];
+        place[0] = band->slots;
+        place[1] = slot(band, starts[end]);
+        place[2] = slot(band, starts[end] + 1);
+        place[3] = band->slots + slot_words(band->lga->bits);
+        for (int i = 0; i < HALO + 2; i++) {
+            survey(band, row_of(band, starts[end] - 1 + i), place[i]);
+        }
+        for (int i = 0; i < HALO; i++) {
+            uint64_t *const near[3] = {place[i], place[i + 1], place[i + 2]};
+            collide(band, row_of(band, starts[end] + i), near);
+        }
+    }
+}
+
+static void pass_band(struct band *band)
+{
+    int64_t surveyed = 0, collided = 0, let_in = -1;
+    for (int64_t k = 0; k < band->rows; k++) {
+        for (; let_in <= k + 1; let_in++) {
+            for (; collided <= let_in + 1 && collided < band->rows; collided++) {
+                for (; surveyed <= collided + 1 && surveyed < band->rows; surveyed++) {
+                    survey(band, row_of(band, surveyed), slot(band, surveyed));
+                }
+                uint64_t *const near[3] = {slot(band, collided - 1), slot(band, collided),
+                                           slot(band, collided + 1)};
+                band->collisions += collide(band, row_of(band, collided), near);
+            }
+            const uint64_t refused = admit(band, let_in);
+            if (let_in >= 0 && let_in < band->rows) band->refused += refused;
+        }
+        band->gone += arrive(band, k);
+    }
+}
+
+void lga_bits_gmlg_step(struct lga *lga, const struct lga_kernel *kernel)
+{
+    const uint32_t bands = lga->bits->bands;
+    uint64_t collisions = 0, refused = 0, gone = 0;
+    #pragma omp parallel for schedule(static, 1)
+    for (uint32_t b = 0; b < bands; b++) {
+        struct band band = band_of(lga, kernel, b);
+        prepare_ends(&band);
+    }
+    #pragma omp parallel for schedule(static, 1) reduction(+ : collisions, refused, gone)
+    for (uint32_t b = 0; b < bands; b++) {
+        struct band band = band_of(lga, kernel, b);
+        pass_band(&band);
+        collisions += band.collisions;
+        refused += band.refused;
+        gone += band.gone;
+    }
+    lga->collisions += collisions;
+    lga->refused += refused;
+    lga->grains_out += gone;
+}

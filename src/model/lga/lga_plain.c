@@ -1,0 +1,39 @@
+/* lga_plain.c - the random bits of the plain form: those of the fast one, all of a tick at once.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#include "model/lga/lga.h"
+
+bool lga_plain_die(const struct lga *lga, enum lga_die_kind kind, uint32_t site)
+{
+    const uint64_t *bits = lga->rolled[kind];
+    if (!bits) return lga->dice.of[kind].threshold;
+    const uint32_t row = site / lga->lattice.columns, x = site % lga->lattice.columns;
+    return bits[(size_t)row * lga->words + x % lga->words] >> (x / lga->words) & 1;
+}
+
+void lga_plain_roll(struct lga *lga)
+{
+    const uint32_t rows = lga->lattice.rows;
+    #pragma omp parallel for if (lga->sites >= LGA_LOOP_MIN)
+    for (uint32_t row = 0; row < rows; row++) {
+        for (enum lga_stage stage = 0; stage < LGA_STAGES; stage++) {
+            uint64_t *out[LGA_DICE] = {NULL};
+            for (uint32_t k = 0; k < LGA_DICE; k++) {
+                if (!lga->rolled[k] || lga_dice_stage(&lga->rule, k) != stage) continue;
+                out[k] = lga->rolled[k] + (size_t)row * lga->words;
+            }
+            lga_bits_roll(&lga->dice, lga->simd, lga_dice_now(lga, row, stage), lga->words, out);
+        }
+    }
+}
+
+bool lga_plain_allocate(struct lga *lga)
+{
+    const size_t words = (size_t)lga->lattice.rows * lga->words;
+    for (int k = 0; k < LGA_DICE; k++) {
+        const bool open = lga->dice.of[k].bits > 0;
+        if (!arena_array(&lga->arena, &lga->rolled[k], open ? words : 0)) return false;
+    }
+    return true;
+}

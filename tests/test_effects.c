@@ -1,0 +1,226 @@
+/* test_effects.c - an effect that a scene does not call for costs nothing, one that is neutral
+ * changes nothing, and one that a model lacks is refused.
+ *
+ * Nothing here names a model: each test goes through the list.
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#include "scenes.h"
+
+#include <malloc.h>
+
+/* A gas; what calls for an effect is put in by %s: keys, then members of the species. */
+#define GAS "until = 100.0; box = [0.0, 0.0, 24.0, 24.0]; count_max = 200; %s "                 \
+    "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";"     \
+    "grains = ({ name = \"a\"; radius = 0.5; restitution = %s; stiffness = 1e4; %s });"         \
+    "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 1.0; %s });"
+
+static const struct asks { effects_t effect; const char *keys, *restitution, *species; } asks[] = {
+    {EFFECT_GRAVITY, "gravity = (0.0, -1.0);", "1.0", ""},
+    {EFFECT_DISSIPATION, "", "0.9", ""},
+    {EFFECT_FRICTION, "", "1.0", "friction = 0.5;"},
+    {EFFECT_MOVING_WALLS, "walls = ({ shape = \"segment\"; points = ((1.0, 23.0), (2.0, 23.0));"
+                          " velocity = (0.1, 0.0); });", "1.0", ""},
+    {EFFECT_GATES, "walls = ({ shape = \"segment\"; points = ((1.0, 23.0), (2.0, 23.0));"
+                   " opens = 1.0; });", "1.0", ""},
+    {EFFECT_OBSTACLE, "obstacles = ({ shape = \"disc\"; center = (12.0, 12.0); radius = 2.0; });",
+     "1.0", ""},
+    {EFFECT_INFLOW, "sources = ({ position = (12.0, 12.0); rate = 0.01; });", "1.0", ""},
+    {EFFECT_OUTFLOW, "sinks = ({ region = [12.0, 12.0, 12.1, 12.1]; });", "1.0", ""},
+    {EFFECT_SCREEN, "screens = ({ center = (12.0, 12.0); radius = 90.0; });", "1.0", ""},
+    {EFFECT_COLLISION_RATE, "measure = { collisions = true; };", "1.0", ""},
+    {EFFECT_COLLISION_COUNT, "measure = { collision_counts = true; };", "1.0", ""},
+    {EFFECT_IMPACT, "measure = { impact_parameters = true; };", "1.0", ""},
+    {EFFECT_STRESS, "measure = { stress = true; };", "1.0", ""},
+};
+
+enum { ASKS = sizeof asks / sizeof *asks };
+
+static char text[2000];
+
+static const char *gas(const char *keys, const char *restitution, const char *species)
+{
+    snprintf(text, sizeof text, GAS, keys, restitution, species, "");
+    return text;
+}
+
+static double heap(void)
+{
+    const struct mallinfo2 now = mallinfo2();
+    return (double)now.uordblks + (double)now.hblkhd;
+}
+
+/* Bytes of the state of one gas. */
+static double state_bytes(const struct model *model, const char *scene_text)
+{
+    struct findings *findings = calloc(1, sizeof *findings);
+    struct scene *scene = scenes_load(scene_text, model->name, findings);
+    CHECK(scene && findings->errors == 0);
+    struct simulation sim;
+    struct error error = {0};
+    const double before = heap();
+    if (!simulation_create(&sim, model, scene, &error)) fail_msg("%s", error.text);
+    const double bytes = heap() - before;
+    simulation_destroy(&sim);
+    scene_free(scene);
+    free(findings);
+    return bytes;
+}
+
+static void test_what_a_model_lacks_is_refused_and_the_models_that_have_it_are_named(void **unused)
+{
+    (void)unused;
+    uint32_t refused = 0;
+    for (const struct model *const *m = model_list; *m; m++) {
+        for (int k = 0; k < ASKS; k++) {
+            if (asks[k].effect & (*m)->effects) continue;
+            struct findings *findings = calloc(1, sizeof *findings);
+            struct scene *scene = scenes_load(gas(asks[k].keys, asks[k].restitution,
+                                                  asks[k].species), (*m)->name, findings);
+            CHECK(scene != NULL);
+            CHECK(scene->effects & asks[k].effect);
+            struct simulation sim;
+            struct error error = {0};
+            CHECK(!simulation_create(&sim, *m, scene, &error));
+            CHECK(error.code == EXIT_SCENE);
+            CHECK(strstr(error.text, effect_word(scene->effects & ~(*m)->effects)));
+            char able[200];
+            model_names(scene->effects, able, sizeof able);
+            CHECK(strstr(error.text, able));
+            CHECK(!strstr(able, (*m)->name));
+            scene_free(scene);
+            free(findings);
+            refused++;
+        }
+    }
+    CHECK(refused > 5);         /* the lattice alone lacks as many */
+}
+
+static void test_an_array_is_there_only_where_a_measurement_is_asked_for(void **unused)
+{
+    (void)unused;
+    /* 256 grains, and at least two bytes for each; the state without is the same twice. */
+    for (const struct model *const *m = model_list; *m; m++) {
+        state_bytes(*m, gas("", "1.0", ""));    /* what is allocated once in a process */
+        const double none = state_bytes(*m, gas("", "1.0", ""));
+        CHECK_NEAR(state_bytes(*m, gas("", "1.0", "")), none, 256);     /* how blocks are aligned */
+        const effects_t per_grain = EFFECT_COLLISION_RATE | EFFECT_COLLISION_COUNT;
+        for (int k = 0; k < ASKS; k++) {
+            if (!(asks[k].effect & per_grain & (*m)->effects)) continue;
+            const double with = state_bytes(*m, gas(asks[k].keys, "1.0", ""));
+            if (!(with - none >= 2 * 256)) fail_msg("%s, %s: %g bytes with, %g without",
+                (*m)->name, effect_word(asks[k].effect), with, none);
+        }
+    }
+}
+
+static void test_spins_and_springs_take_memory_only_with_friction(void **unused)
+{
+    (void)unused;
+    for (const struct model *const *m = model_list; *m; m++) {
+        if (!((*m)->effects & EFFECT_ROTATION)) continue;
+        const double without = state_bytes(*m, gas("", "0.9", "")),
+                     with = state_bytes(*m, gas("", "0.9", "friction = 0.5;"));
+        if (!(with - without >= 4 * 256)) fail_msg("%s: %g bytes with friction, %g without",
+                                                   (*m)->name, with, without);
+    }
+}
+
+static void test_without_friction_no_tangential_force_is_ever_evaluated(void **unused)
+{
+    (void)unused;
+    for (const struct model *const *m = model_list; *m; m++) {
+        if (!((*m)->effects & EFFECT_ROTATION)) continue;
+        for (int on = 0; on < 2; on++) {
+            struct scenes_run *run = scenes_begin(gas("", "0.9", on ? "friction = 0.5;" : ""),
+                                                  (*m)->name);
+            scenes_advance(run, 3);
+            const struct counters c = simulation_count(&run->sim);
+            CHECK(c.collisions > 50);
+            if ((c.tangential > 0) != (on == 1)) {
+                fail_msg("%s: %llu tangential forces with friction %s", (*m)->name,
+                         (unsigned long long)c.tangential, on ? "on" : "off");
+            }
+            if (!on) CHECK(c.rotational_energy == 0);
+            scenes_end(run);
+        }
+    }
+}
+
+/* Where all grains are after a while, under both texts; they must agree to rounding. */
+static void compare_runs(const struct model *model, const char *with, const char *without,
+                         effects_t effect, const char *what)
+{
+    struct scenes_run *a = scenes_begin(with, model->name), *b = scenes_begin(without, model->name);
+    CHECK(a->scene->effects & effect);
+    CHECK(!(b->scene->effects & effect));
+    scenes_advance(a, 3);
+    scenes_advance(b, 3);
+    CHECK(simulation_count(&a->sim).collisions > 20);
+    struct grains x = scenes_look(a), y = scenes_look(b);
+    CHECK(x.count == y.count);
+    for (uint32_t k = 0; k < x.count; k++) {
+        /* Another loop may add in another order; a few collisions make that no more than 1e-9. */
+        const double apart = hypot(x.x[k] - y.x[k], x.y[k] - y.y[k]);
+        if (!(apart <= 1e-9)) fail_msg("%s: %s moves grain %u by %g", model->name, what, k, apart);
+    }
+    grains_free(&x);
+    grains_free(&y);
+    scenes_end(a);
+    scenes_end(b);
+}
+
+static void test_gravity_of_nothing_changes_nothing(void **unused)
+{
+    (void)unused;
+    char none[2000];
+    for (const struct model *const *m = model_list; *m; m++) {
+        if (strcmp((*m)->work, "ticks") == 0) continue;         /* knows only that it falls */
+        /* The cut-off time would be chosen from gravity. */
+        snprintf(none, sizeof none, "%s", gas("ed = { t_c = 0.0; };", "0.9", ""));
+        compare_runs(*m, gas("ed = { t_c = 0.0; }; gravity = (0.0, -1e-300);", "0.9", ""), none,
+                     EFFECT_GRAVITY, "gravity of 1e-300");
+    }
+}
+
+static void test_friction_of_nothing_changes_nothing(void **unused)
+{
+    (void)unused;
+    char none[2000];
+    for (const struct model *const *m = model_list; *m; m++) {
+        if (!((*m)->effects & EFFECT_ROTATION)) continue;
+        snprintf(none, sizeof none, "%s", gas("", "0.9", ""));
+        compare_runs(*m, gas("", "0.9", "friction = 1e-300;"), none, EFFECT_FRICTION,
+                     "friction of 1e-300");
+    }
+}
+
+static void test_a_cut_off_time_of_nothing_changes_nothing(void **unused)
+{
+    (void)unused;
+    struct grains ends[2];
+    for (int k = 0; k < 2; k++) {
+        struct scenes_run *run = scenes_begin(gas(k ? "ed = { t_c = 1e-300; };"
+                                                    : "ed = { t_c = 0.0; };", "0.9", ""), "ed");
+        scenes_advance(run, 3);
+        CHECK(simulation_count(&run->sim).collisions_elastic == 0);
+        ends[k] = scenes_look(run);
+        scenes_end(run);
+    }
+    for (uint32_t i = 0; i < ends[0].count; i++) CHECK(ends[0].x[i] == ends[1].x[i]);
+    grains_free(&ends[0]);
+    grains_free(&ends[1]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_what_a_model_lacks_is_refused_and_the_models_that_have_it_are_named),
+        cmocka_unit_test(test_an_array_is_there_only_where_a_measurement_is_asked_for),
+        cmocka_unit_test(test_spins_and_springs_take_memory_only_with_friction),
+        cmocka_unit_test(test_without_friction_no_tangential_force_is_ever_evaluated),
+        cmocka_unit_test(test_gravity_of_nothing_changes_nothing),
+        cmocka_unit_test(test_friction_of_nothing_changes_nothing),
+        cmocka_unit_test(test_a_cut_off_time_of_nothing_changes_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
