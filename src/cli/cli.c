@@ -23,7 +23,8 @@ static const uint8_t live_options[] = {OPTION_web, OPTION_commands, OPTION_outpu
 static const uint8_t replay_options[] = {OPTION_output, OPTION_force, OPTION_threads, OPTION_help,
     OPTION_COUNT};
 static const uint8_t map_options[] = {OPTION_output, OPTION_force, OPTION_field, OPTION_time,
-    OPTION_average, OPTION_as, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_size, OPTION_zoom, OPTION_theme,
+    OPTION_average, OPTION_as, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_size, OPTION_zoom,
+    OPTION_theme,
     OPTION_colormap, OPTION_scale, OPTION_map_range, OPTION_title, SIMULATING, ALWAYS};
 static const uint8_t export_options[] = {OPTION_to, OPTION_output, OPTION_frame, OPTION_time,
     OPTION_field, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_set, OPTION_help, OPTION_COUNT};
