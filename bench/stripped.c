@@ -43,6 +43,11 @@ static uint32_t cell_of(double x)
     return c < CELLS ? c : CELLS - 1;
 }
 
+static uint32_t cell_at(const struct gas *g, uint32_t i)
+{
+    return cell_of(g->y[i]) * CELLS + cell_of(g->x[i]);
+}
+
 static void permute(double *values, const uint32_t *order, double *spare, uint32_t n)
 {
     for (uint32_t k = 0; k < n; k++) spare[k] = values[order[k]];
@@ -54,11 +59,11 @@ static void list_pairs(struct gas *g)
 {
     const uint32_t n = g->count;
     memset(g->cell_first, 0, sizeof g->cell_first);
-    for (uint32_t i = 0; i < n; i++) g->cell_first[cell_of(g->y[i]) * CELLS + cell_of(g->x[i]) + 1]++;
+    for (uint32_t i = 0; i < n; i++) g->cell_first[cell_at(g, i) + 1]++;
     for (uint32_t c = 0; c < CELLS * CELLS; c++) g->cell_first[c + 1] += g->cell_first[c];
     uint32_t *place = malloc((CELLS * CELLS + 1) * sizeof *place);
     memcpy(place, g->cell_first, sizeof g->cell_first);
-    for (uint32_t i = 0; i < n; i++) g->order[place[cell_of(g->y[i]) * CELLS + cell_of(g->x[i])]++] = i;
+    for (uint32_t i = 0; i < n; i++) g->order[place[cell_at(g, i)]++] = i;
     free(place);
     permute(g->x, g->order, g->fx, n);
     permute(g->y, g->order, g->fx, n);
@@ -70,7 +75,8 @@ static void list_pairs(struct gas *g)
         const uint32_t cx = cell_of(g->x[i]), cy = cell_of(g->y[i]);
         g->first[i] = links;
         for (uint32_t k = 0; k < 9; k++) {
-            const uint32_t c = (cy + k / 3 + CELLS - 1) % CELLS * CELLS + (cx + k % 3 + CELLS - 1) % CELLS;
+            const uint32_t row = (cy + k / 3 + CELLS - 1) % CELLS;
+            const uint32_t c = row * CELLS + (cx + k % 3 + CELLS - 1) % CELLS;
             for (uint32_t j = g->cell_first[c]; j < g->cell_first[c + 1]; j++) {
                 const double dx = nearest(g->x[i] - g->x[j]), dy = nearest(g->y[i] - g->y[j]);
                 if (j > i && dx * dx + dy * dy < reach2) g->partner[links++] = j;
@@ -148,7 +154,8 @@ int main(void)
     struct scene *scene = scene_load(&request, &findings);
     if (scene) model_find("md")->resolve(scene, &findings);
     if (!scene || !simulation_create(&sim, model_find("md"), scene, &error)
-        || simulation_advance(&sim, 1, UINT64_MAX, &error) != ADVANCE_REACHED || !take(&gas, &sim)) {
+        || simulation_advance(&sim, 1, UINT64_MAX, &error) != ADVANCE_REACHED
+        || !take(&gas, &sim)) {
         fprintf(stderr, "%s%s\n", error.text, findings.errors ? findings.list[0].text : "");
         return EXIT_FAILED;
     }
@@ -158,7 +165,8 @@ int main(void)
         for (int s = 0; s < STEPS; s++) step(&gas);
         least[0] = fmin(least[0], clock_process() - start);
         start = clock_process();
-        if (simulation_advance(&sim, t += STEPS * dt, UINT64_MAX, &error) != ADVANCE_REACHED) return 1;
+        t += STEPS * dt;
+        if (simulation_advance(&sim, t, UINT64_MAX, &error) != ADVANCE_REACHED) return EXIT_FAILED;
         least[1] = fmin(least[1], clock_process() - start);
     }
     const double work = (double)gas.count * STEPS;

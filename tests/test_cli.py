@@ -20,6 +20,8 @@ import tempfile
 import time
 import unittest
 
+import verdict
+
 PROGRAM = os.path.abspath(sys.argv.pop(1))
 
 # A hundred discs fall on the floor; the first touch it after about 0.6.
@@ -434,10 +436,4 @@ class Sandreel(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    program = unittest.main(exit=False, verbosity=1)
-    result = program.result
-    failed = len(result.failures) + len(result.errors)
-    print(f"[  PASSED  ] {result.testsRun - failed - len(result.skipped)} test(s).")
-    if failed:
-        print(f"[  FAILED  ] {failed} test(s).")
-    sys.exit(1 if failed else 0)
+    verdict.run()

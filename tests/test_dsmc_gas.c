@@ -252,6 +252,25 @@ static void test_rough_elastic_grains_share_energy_with_their_spins(void **unuse
     scenes_end(run);
 }
 
+static void test_impact_parameters_are_uniform_and_each_collision_has_one(void **unused)
+{
+    (void)unused;
+    struct scenes_run *run = begin_gas(100.0, 1, "method = \"plain\"; };"
+        "measure = { impact_parameters = true; impact_bins = 10; }; md = {");
+    scenes_advance(run, 10);
+    const struct tally_impact *impact = &simulation_tally(&run->sim)->impact;
+    const double collisions = (double)simulation_count(&run->sim).collisions;
+    double sum = 0;
+    CHECK(impact->bins == 10 && collisions > 20000);
+    for (uint32_t k = 0; k < impact->bins; k++) {
+        sum += impact->count[k];
+        /* Poisson in each bin; four deviations of ten bins are exceeded once in 1600 seeds. */
+        CHECK_NEAR(impact->count[k], collisions / 10, 4 * sqrt(collisions / 10));
+    }
+    CHECK(sum == collisions);
+    scenes_end(run);
+}
+
 static uint64_t digest_with(int threads, const char *settings)
 {
     omp_set_num_threads(threads);
@@ -298,6 +317,7 @@ int main(void)
         cmocka_unit_test(test_the_dense_form_is_not_used_between_sheared_borders),
         cmocka_unit_test(test_uniform_shear_heats_as_the_square_of_its_rate),
         cmocka_unit_test(test_rough_elastic_grains_share_energy_with_their_spins),
+        cmocka_unit_test(test_impact_parameters_are_uniform_and_each_collision_has_one),
         cmocka_unit_test(test_the_bytes_do_not_depend_on_the_number_of_threads),
         cmocka_unit_test(test_a_grain_needs_forty_bytes_at_most),
     };

@@ -17,6 +17,8 @@ import tempfile
 import time
 import unittest
 
+import verdict
+
 PROGRAM = os.path.abspath(sys.argv.pop(1))
 
 # Discs of two species fall; a source brings more, and the box does not begin at the origin.
@@ -425,10 +427,4 @@ run 0 pre no post no
 
 
 if __name__ == "__main__":
-    program = unittest.main(exit=False, verbosity=1)
-    result = program.result
-    failed = len(result.failures) + len(result.errors)
-    print(f"[  PASSED  ] {result.testsRun - failed - len(result.skipped)} test(s).")
-    if failed:
-        print(f"[  FAILED  ] {failed} test(s).")
-    sys.exit(1 if failed else 0)
+    verdict.run()

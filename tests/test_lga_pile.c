@@ -5,8 +5,7 @@
  * Reference numbers come from an independent program for the same rules, as means and standard
  * errors over three seeds.
  */
-#include "check.h"
-#include "model/lga/lga_bits.h"
+#include "lga_gas.h"
 
 #define ROW_HEIGHT 0.86602540378443864676
 
@@ -199,12 +198,76 @@ static void test_a_poured_heap_is_almost_as_steep_as_the_lattice(void **unused)
     CHECK_NEAR(mean, 56.5, 1 + 2 * 0.7 / sqrt(2));
 }
 
+/* --- a million ticks --- */
+
+static void check_million(struct lga_rule rule)
+{
+    enum { COLUMNS = 300, ROWS = 20, TICKS = 1000000, EVERY = 10000 };
+    struct lga *lga = gas(COLUMNS, ROWS, rule, 3);
+    uint64_t state = 17;
+    uint8_t kind[COLUMNS * ROWS] = {0};
+    for (uint32_t n = 0; n < lga->sites; n++) {
+        const uint32_t x = n % COLUMNS, y = n / COLUMNS;
+        if (x == 0 || y == 0 || x == 99 || gas_unit(&state) < 0.03) kind[n] = LGA_WALL;
+        if (x == 150 && y == 1) kind[n] = LGA_SINK;
+    }
+    gas_set_kinds(lga, kind);
+    for (uint32_t n = 0; n < lga->sites; n++) {
+        if (kind[n] == LGA_FLUID) lga_node_set(lga, n, gas_movers(&state, 0.15), 0);
+    }
+    const int64_t start = totals(lga).mass;
+    for (int t = 1; t <= TICKS; t++) {
+        lga_step(lga);
+        if (t % EVERY) continue;
+        assert_int_equal(totals(lga).mass + (int64_t)lga->grains_out, start);
+        for (uint32_t n = 0; n < lga->sites; n++) {
+            if (kind[n] != LGA_FLUID) assert_int_equal(lga_node_load(lga, n), 0);
+        }
+    }
+    CHECK(lga->grains_out > 0 && totals(lga).mass > 0);
+    gas_free(lga);
+}
+
+static void test_no_grain_is_lost_or_doubled_in_a_million_ticks(void **unused)
+{
+    (void)unused;
+    /* Walls, a sink, gravity and loss; every grain is on a node or has gone down the sink. */
+    check_million((struct lga_rule){.method = LGA_FHP2, .gain = 1, .loss = 0.1, .gravity = true,
+                                    .fall = 0.01, .smooth = 0.5});
+    check_million((struct lga_rule){.method = LGA_SANDPILE, .gain = 1, .loss = 0.1,
+                                    .gravity = true, .fall = 0.1, .strict = true});
+    check_million((struct lga_rule){.gain = 1, .inelastic = 0.1, .gravity = true, .fall = 0.1,
+                                    .wall_stop = 0.1});
+    check_million((struct lga_rule){.gain = 1, .inelastic = 0.5, .gravity = true, .fall = 0.5,
+                                    .wall_stop = 0.5, .vertical = true, .friction = 0.5});
+}
+
+static void test_momentum_is_exact_for_a_million_ticks_where_nothing_takes_it_up(void **unused)
+{
+    (void)unused;
+    static const struct lga_rule rules[] = {{.method = LGA_FHP2, .gain = 1},
+                                            {.method = LGA_GMLG, .gain = 1, .inelastic = 1e-3}};
+    for (int k = 0; k < 2; k++) {
+        struct lga *lga = gas(64, 64, rules[k], 3);
+        uint64_t state = 4;
+        gas_set_kinds(lga, NULL);
+        for (uint32_t n = 0; n < lga->sites; n++) lga_node_set(lga, n, gas_movers(&state, 0.2), 0);
+        const struct totals start = totals(lga);
+        for (int t = 0; t < 1000000; t++) lga_step(lga);
+        const struct totals end = totals(lga);
+        CHECK(end.mass == start.mass && end.twice_x == start.twice_x && end.y == start.y);
+        gas_free(lga);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rough_walls_and_loss_make_density_waves_in_a_pipe),
         cmocka_unit_test(test_smoother_walls_and_little_loss_make_none),
         cmocka_unit_test(test_in_a_smooth_pipe_everything_falls_freely),
+        cmocka_unit_test(test_no_grain_is_lost_or_doubled_in_a_million_ticks),
+        cmocka_unit_test(test_momentum_is_exact_for_a_million_ticks_where_nothing_takes_it_up),
         cmocka_unit_test(test_a_poured_heap_is_almost_as_steep_as_the_lattice),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -240,6 +240,17 @@ def test_expectations_are_counted():
     assert "2 of 3 expectations" in done.stderr, done.stderr
 
 
+def test_the_page_of_the_manual_lists_the_commands():
+    help_lines = live("a", "help\n").stdout.splitlines()[:-1]
+    told = [(usage, doc.strip()) for usage, doc in zip(help_lines[::2], help_lines[1::2])]
+    with open(os.path.join(os.environ["SOURCE_ROOT"], "docs", "live.md")) as page:
+        written = re.findall(r"(?m)^\| `(.*)` \| (.*) \|$", page.read())
+    written = [(usage.replace("\\|", "|"), doc) for usage, doc in written]
+    assert len(told) > 20
+    for row in told:
+        assert row in written, row
+
+
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)

@@ -16,6 +16,8 @@ import tempfile
 import time
 import unittest
 
+import verdict
+
 PROGRAM = os.path.abspath(sys.argv.pop(1))
 
 SCENE = """
@@ -229,10 +231,4 @@ class Sweep(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    program = unittest.main(exit=False, verbosity=1)
-    result = program.result
-    failed = len(result.failures) + len(result.errors)
-    print(f"[  PASSED  ] {result.testsRun - failed - len(result.skipped)} test(s).")
-    if failed:
-        print(f"[  FAILED  ] {failed} test(s).")
-    sys.exit(1 if failed else 0)
+    verdict.run()

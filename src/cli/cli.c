@@ -13,7 +13,7 @@
 #define ALWAYS OPTION_threads, OPTION_progress, OPTION_help, OPTION_COUNT
 
 static const uint8_t run_options[] = {OPTION_output, SIMULATING, OPTION_resume, OPTION_time_limit,
-    OPTION_dry_run, OPTION_force, OPTION_every, LOOK, ALWAYS};
+    OPTION_accuracy, OPTION_budget, OPTION_dry_run, OPTION_force, OPTION_every, LOOK, ALWAYS};
 static const uint8_t frame_options[] = {OPTION_output, OPTION_time, LOOK, SIMULATING, ALWAYS};
 static const uint8_t movie_options[] = {OPTION_output, OPTION_side_by_side, OPTION_fps,
     OPTION_every, LOOK, SIMULATING, ALWAYS};
@@ -39,8 +39,10 @@ static const uint8_t sweep_options[] = {OPTION_vary, OPTION_random, OPTION_repea
     ALWAYS};
 static const uint8_t help_options[] = {OPTION_help, OPTION_COUNT};
 static const uint8_t version_options[] = {OPTION_json, OPTION_help, OPTION_COUNT};
-static const uint8_t bench_options[] = {OPTION_effects, OPTION_json, OPTION_output, OPTION_against, OPTION_threads,
-    OPTION_help, OPTION_COUNT};
+static const uint8_t bench_options[] = {OPTION_effects, OPTION_json, OPTION_output, OPTION_against,
+    OPTION_threads, OPTION_help, OPTION_COUNT};
+static const uint8_t cost_options[] = {OPTION_output, OPTION_seeds, OPTION_time_limit, OPTION_json,
+    OPTION_set, OPTION_until, OPTION_quick, OPTION_threads, OPTION_help, OPTION_COUNT};
 static const uint8_t stress_options[] = {OPTION_quick, OPTION_json, OPTION_threads, OPTION_help,
     OPTION_COUNT};
 
@@ -58,8 +60,8 @@ const struct command cli_commands[] = {
      "(--model md,lga) or several scenes and runs into one picture; --size is that of one panel.\n",
      movie_options, 1, OPTIONS_OPERANDS_MAX, cli_movie},
     {"live", "SCENE|RUN", "watches and steers a simulation while it runs",
-     "--web prints an address for a browser; --commands FILE carries out a file of commands, and\n"
-     "ends unless --web goes on.  A run goes on from its newest checkpoint.  The session is\n"
+     "In the terminal, unless --web prints an address for a browser; --commands FILE carries out a\n"
+     "file of commands, and ends unless --web goes on.  A run goes on from its newest checkpoint.  The session is\n"
      "written down in a directory, NAME-live unless -o says another; `sandreel replay` repeats\n"
      "it.  docs/live.md lists the commands.\n",
      live_options, 1, 1, cli_live},
@@ -118,6 +120,11 @@ const struct command cli_commands[] = {
     {"bench", "[NAME...]", "repeatable timings of models, drawing, encoding and maps",
      "The median of several repeats, in processor seconds.  --against OLD.json prints ratios.\n",
      bench_options, 0, OPTIONS_OPERANDS_MAX, cli_bench},
+    {"cost", "SCENE", "what accuracy costs: error against wall time, for every model and setting",
+     "Writes NAME-cost/ with cost.csv, cost.json and picture.png.  What is compared stands in\n"
+     "`measure.cost` of the scene.  A setting that takes longer than --time-limit is left out.\n"
+     "`sandreel run SCENE --accuracy 1%` then takes the fastest one that is near enough.\n",
+     cost_options, 1, 1, cli_cost},
     {"stress", "[CASE...]", "runs the hard cases and tells what each of them held",
      "A case is a scene with a group `hard`: built in as hard/NAME, or a file.  --quick leaves\n"
      "out the slow ones.  Exit code 4 if one fails; it says which grain, where, and when.\n",

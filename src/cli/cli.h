@@ -28,6 +28,7 @@ int cli_completion(const struct options *options);
 int cli_manual(const struct options *options);
 int cli_sweep(const struct options *options);
 int cli_bench(const struct options *options);
+int cli_cost(const struct options *options);
 int cli_stress(const struct options *options);
 
 #endif

@@ -5,6 +5,7 @@
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "bench/effects.h"
+#include "model/simulation.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -70,6 +71,43 @@ static void tell_summary(const struct setup *setup)
                                                       sizeof text));
 }
 
+/* What a character of the picture stands for: what is solid in it, or else its middle. */
+static char ground_of(const struct simulation *sim, double x, double y, double width, double height)
+{
+    enum { POINTS = 8 };
+    for (int k = 0; k < POINTS * POINTS; k++) {
+        const double dx = (k % POINTS + 0.5) / POINTS - 0.5;
+        const double dy = (k / POINTS + 0.5) / POINTS - 0.5;
+        if (sim->model->ground(sim->state, x + dx * width, y + dy * height) == '#') return '#';
+    }
+    return sim->model->ground(sim->state, x, y);
+}
+
+/* The box as the model's lattice has it; characters are about twice as high as wide. */
+static bool tell_ground(const struct setup *setup, struct error *error)
+{
+    enum { COLUMNS = 72, ROWS_MAX = 48 };
+    const double *box = setup->scene->box;
+    const double width = box[2] - box[0], height = box[3] - box[1];
+    if (!setup->model->ground) return true;
+    struct simulation sim;
+    if (!simulation_create(&sim, setup->model, setup->scene, error)) return false;
+    const double cell = fmax(width / COLUMNS, height / (2 * ROWS_MAX));
+    const int columns = (int)ceil(width / cell - 1e-9), rows = (int)ceil(height / cell / 2 - 1e-9);
+    printf("its lattice at t = 0 (# solid, v sink; a character is %.3g x %.3g %s):\n", cell,
+           2 * cell, scene_unit(setup->scene, "length"));
+    for (int j = rows - 1; j >= 0; j--) {
+        printf("    |");
+        for (int i = 0; i < columns; i++) {
+            putchar(ground_of(&sim, box[0] + (i + 0.5) * cell, box[1] + (j + 0.5) * 2 * cell,
+                              cell, 2 * cell));
+        }
+        printf("|\n");
+    }
+    simulation_destroy(&sim);
+    return true;
+}
+
 /* What it costs here: measured now, by going on without it from the same state. */
 static void tell_cost(const struct options *options, const struct model *model, effects_t effect)
 {
@@ -114,7 +152,8 @@ int cli_check(const struct options *options)
         return opening_fail(&error);
     }
     tell_summary(&setup);
+    const bool told = tell_ground(&setup, &error);
     if (options_given(options, OPTION_explain)) explain(options, setup.scene, setup.model);
     setup_free(&setup);
-    return EXIT_DONE;
+    return told ? EXIT_DONE : opening_fail(&error);
 }

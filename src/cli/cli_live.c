@@ -5,6 +5,7 @@
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "live/conduct.h"
+#include "live/terminal.h"
 #include "live/web.h"
 
 #include <stdio.h>
@@ -51,16 +52,24 @@ static bool show_web(const struct options *options, struct session *session, str
     return done;
 }
 
+static bool show_terminal(struct session *session, struct error *error)
+{
+    struct loop *loop = loop_create(session, error);
+    struct terminal *terminal = loop ? terminal_open(loop, error) : NULL;
+    const bool done = terminal && loop_run(loop, &opening_signal, error);
+    terminal_close(terminal);
+    loop_destroy(loop);
+    return done;
+}
+
 static bool carry_out(const struct options *options, struct session *session, struct error *error)
 {
     const struct conduct_file file = {.path = options->values[OPTION_commands], .tell = tell,
                                       .signal = &opening_signal};
+    const bool web = options_given(options, OPTION_web);
     if (file.path && !conduct_file(session, &file, error)) return false;
-    if (options_given(options, OPTION_web) && !session->ended) {
-        return show_web(options, session, error);
-    }
-    return file.path || error_set_code(error, EXIT_USAGE, "live: say how to watch it: --web in a "
-                                       "browser, --commands FILE from a file");
+    if (session->ended || (file.path && !web)) return true;
+    return web ? show_web(options, session, error) : show_terminal(session, error);
 }
 
 int cli_live(const struct options *options)

@@ -57,7 +57,7 @@ static void write_command(const struct command *command)
     }
     printf("\n");
     for (const uint8_t *id = command->accepts; *id != OPTION_COUNT; id++) {
-        if (*id != OPTION_help) print_option(&options_table[*id]);
+        print_option(&options_table[*id]);
     }
 }
 

@@ -6,6 +6,7 @@
 #include "cli/opening.h"
 #include "run/folder.h"
 #include "run/panel.h"
+#include "run/recall.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -43,6 +44,18 @@ static bool choose(struct cast *cast, const struct options *options, struct erro
     return error_set_code(error, EXIT_USAGE, "several films in one movie need --side-by-side");
 }
 
+/* A run that kept its grains also kept the seconds that its model took. */
+static void tell_run_cost(const char *run, char *text, size_t size)
+{
+    struct error ignored;
+    json_t *manifest = recall_manifest(run, &ignored);
+    const json_t *seconds = json_object_get(manifest, "seconds");
+    const json_t *wall = json_object_get(json_object_get(seconds, "core"), "wall");
+    text[0] = 0;
+    if (wall) snprintf(text, size, "   computed in %.3g s", json_number_value(wall));
+    json_decref(manifest);
+}
+
 static bool open_panel(struct cast *cast, uint32_t p, const struct options *options,
                        struct error *error)
 {
@@ -55,8 +68,10 @@ static bool open_panel(struct cast *cast, uint32_t p, const struct options *opti
     struct view view = setup->scene->view;
     if (cast->count > 1 && !options_given(options, OPTION_label)) {
         const size_t used = strlen(view.label);
+        char cost[80] = "   computed in {wall} s";
+        if (redraws) tell_run_cost(path, cost, sizeof cost);
         snprintf(view.label + used, sizeof view.label - used, "%s{model}%s", used ? "   " : "",
-                 redraws ? "" : "   computed in {wall} s");
+                 cost);
     }
     panel->setup = setup;
     return footage_open(&panel->footage, setup, path, film_needs_contacts(&view), error)

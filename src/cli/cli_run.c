@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "cli/cli.h"
+#include "cli/cli_cost.h"
 #include "cli/opening.h"
 #include "run/folder.h"
 
@@ -63,8 +64,8 @@ static void tell_costs(const struct run_result *result, const struct scene *scen
     effect_words((((effects_t)1 << EFFECT_COUNT) - 1) & ~result->effects, words, sizeof words);
     fprintf(stderr, "left out: %s\ncost:", words);
     for (int p = 0; p < PART_COUNT; p++) {
-        fprintf(stderr, " %s %.1f %%%s", parts_name((enum part)p), 100 * result->parts.wall[p] / wall,
-                p + 1 < PART_COUNT ? "," : ";");
+        fprintf(stderr, " %s %.1f %%%s", parts_name((enum part)p),
+                100 * result->parts.wall[p] / wall, p + 1 < PART_COUNT ? "," : ";");
     }
     if (result->per_time > 0) {
         fprintf(stderr, " %.3g s for a time of 1 %s, %.3g us a step\n", result->per_time,
@@ -113,14 +114,20 @@ static int simulate(const struct options *options, const struct setup *setup,
     return EXIT_DONE;
 }
 
-int cli_run(const struct options *options)
+int cli_run(const struct options *given)
 {
+    struct options chosen = *given, *const options = &chosen;
     struct error error = {0};
+    json_t *costs;
     struct setup setup;
     const char *path = options->operands[0];
     const bool resume = options_given(options, OPTION_resume);
     const uint32_t threads = opening_threads(options, &error);
     if (threads == 0) return opening_fail(&error);
+    if (!cli_cost_choose(options, &costs, &error)) {
+        json_decref(costs);
+        return opening_fail(&error);
+    }
     /* `run DIRECTORY --resume` takes scene and directory from there. */
     const bool is_run = resume && setup_is_run(path);
     int code;
@@ -138,5 +145,6 @@ int cli_run(const struct options *options)
              ? tell_plan(&setup, directory) : simulate(options, &setup, directory, threads);
     }
     setup_free(&setup);
+    json_decref(costs);
     return code;
 }

@@ -89,6 +89,11 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
       "only every N-th point, from the I-th on")                                                \
     X(explain,   "explain",   0,   NULL,    NULL, FORM_PLAIN,                                   \
       "which effects are on, and which off")                                                    \
+    X(accuracy,  "accuracy",  0,   "X%",    NULL, FORM_PLAIN,                                   \
+      "the fastest setting within this error, by what `sandreel cost` measured")                \
+    X(budget,    "budget",    0,   "TIME",  NULL, FORM_PLAIN,                                   \
+      "the nearest setting that takes no longer (60s, 10m), by `sandreel cost`")                \
+    X(seeds,     "seeds",     0,   "N",     NULL, FORM_PLAIN, "runs of each setting; default: 3") \
     X(effects,   "effects",   0,   NULL,    NULL, FORM_PLAIN,                                   \
       "time and bytes per grain with each effect alone, all, none")                             \
     X(frame,     "frame",     0,   "N",     NULL, FORM_PLAIN,                                   \

@@ -83,6 +83,11 @@ struct stage *loop_stage(struct loop *loop)
     return loop->stage;
 }
 
+struct session *loop_session(struct loop *loop)
+{
+    return loop->session;
+}
+
 /* ---- orders ------------------------------------------------------------------------------- */
 
 static bool place_order(struct loop *loop, struct order *order)

@@ -38,6 +38,9 @@ void loop_trouble(struct loop *loop, char *text, size_t size);
 
 struct stage *loop_stage(struct loop *loop);
 
+/* The session itself: before loop_run() begins, or for its own thread. */
+struct session *loop_session(struct loop *loop);
+
 /* Ends it, as `quit` does. */
 void loop_end(struct loop *loop);
 

@@ -77,6 +77,10 @@ struct model {
     /* Optional, for lattices too large to list: adds to the cells of a grid what stands there; the
      * components are those of enum field_sample, zero before (NULL: coarse-grain `observe`). */
     bool (*sample)(const void *state, struct field *field);
+
+    /* Optional, for models that put the scene onto a lattice of their own: what became of a place,
+     * as `check` shows it: '#' solid, 'v' a sink, ' ' free. */
+    char (*ground)(const void *state, double x, double y);
 };
 
 enum { MODEL_MAX = 8 };

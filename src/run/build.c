@@ -35,6 +35,9 @@ json_t *build_versions(void)
         "sandreel", build_version, "compiler", __VERSION__, "libpng", png_get_libpng_ver(NULL),
         "freetype", freetype_version(), "fftw", fftw_version, "jansson", jansson_version_str(),
         "libconfig", SANDREEL_LIBCONFIG, "openmp", _OPENMP);
+#ifdef SANDREEL_TERMINAL
+    json_object_set_new(versions, "terminal", json_string(SANDREEL_TERMINAL));
+#endif
 #ifdef SANDREEL_MICROHTTPD
     json_object_set_new(versions, "libmicrohttpd", json_string(SANDREEL_MICROHTTPD));
 #endif

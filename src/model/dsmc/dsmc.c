@@ -84,7 +84,8 @@ static bool allocate(struct dsmc *dsmc)
         && arena_array(arena, &dsmc->load, dsmc->full ? dsmc->cells : 0)
         && arena_array(arena, &dsmc->cursors, scene->source_count)
         && arena_array(arena, &dsmc->batch, dsmc->batch_max)
-        && dsmc_walls_create(dsmc) && tally_create(&dsmc->tally, scene, arena);
+        && dsmc_walls_create(dsmc) && tally_create(&dsmc->tally, scene, arena)
+        && arena_array(arena, &dsmc->impacts, (size_t)dsmc->tally.impact.bins * dsmc->threads);
 }
 
 static void dsmc_destroy(void *state)
@@ -223,7 +224,8 @@ const struct model model_dsmc = {
     .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_ROTATION | EFFECT_FRICTION
               | EFFECT_POLYDISPERSE | EFFECT_PERIODIC | EFFECT_WALLS
               | EFFECT_MOVING_WALLS | EFFECT_GATES | EFFECT_OBSTACLE | EFFECT_INFLOW
-              | EFFECT_OUTFLOW | EFFECT_SCREEN | EFFECT_COLLISION_RATE | EFFECT_SHEAR,
+              | EFFECT_OUTFLOW | EFFECT_SCREEN | EFFECT_COLLISION_RATE | EFFECT_SHEAR
+              | EFFECT_IMPACT,
     .settings = &dsmc_settings_group,
     .resolve  = dsmc_settings_resolve,
     .memory   = dsmc_memory,

@@ -58,8 +58,9 @@ struct dsmc_axis {
 
 struct dsmc_sums {              /* of one thread in one step */
     uint64_t collisions, rejected, tangential;
+    double *impacts;            /* by impact parameter, since it was last collected; NULL: none */
     bool moved;                 /* hsmc: has a grain changed its cell? */
-    char apart[32];             /* on its own cache line */
+    char apart[24];             /* on its own cache line */
 };
 
 /* Walls near each cell of a grid that stands still. */
@@ -106,6 +107,7 @@ struct dsmc {
     uint32_t *places;           /* [thread][cell] */
     uint32_t threads;
     struct dsmc_sums *sums;     /* [thread] */
+    double *impacts;            /* [thread][bin]; NULL if nobody asks */
     struct dsmc_walls walls;
 
     uint32_t full;              /* hsmc: grains that fill a cell; 0: no limit */
@@ -135,6 +137,14 @@ static inline struct dsmc_image dsmc_image(const struct dsmc *dsmc)
     const double speed = dsmc->scene->shear_rate * (double)dsmc->ay.length;
     const double way = fmod(speed * (dsmc_time(dsmc) + dsmc->dt), (double)dsmc->ax.length);
     return (struct dsmc_image){(float)speed, (float)way};
+}
+
+/* A collision with the impact parameter b, a share of the diameter. */
+static inline void dsmc_note_impact(const struct dsmc *dsmc, double *impacts, float b)
+{
+    const uint32_t bins = dsmc->tally.impact.bins;
+    const uint32_t bin = (uint32_t)(fabsf(b) * (float)bins);
+    impacts[bin < bins ? bin : bins - 1] += 1;
 }
 
 static inline uint32_t dsmc_axis_cell(const struct dsmc_axis *axis, float x)

@@ -45,6 +45,7 @@ struct block {
     float    bound2[DSMC_BLOCK];        /* square of the bound on relative speeds */
     uint32_t pairs[DSMC_BLOCK];         /* candidates */
     uint64_t collisions, rejected, tangential;
+    double  *impacts;
 };
 
 /* ---- how many candidates -------------------------------------------------------------------- */
@@ -120,6 +121,7 @@ struct batch {
     uint32_t k[BATCH + EIGHT];          /* which cell of the block */
     uint32_t i[BATCH], j[BATCH];        /* which grains */
     float least[BATCH];         /* they collide if the square of their relative speed is more */
+    float b[BATCH];             /* impact parameter, a share of the diameter */
     float along[BATCH], across[BATCH];  /* share of the relative velocity, and of it turned left */
 };
 
@@ -171,6 +173,7 @@ FORCE_INLINE void work_out(struct block *block, struct batch *batch)
         const float b = (float)(int32_t)(words[2 * made + c] >> 8) * 0x1p-23f - 1;
         const float c2 = 1 - b * b;
         batch->least[c] = u * u * bound2[c];
+        batch->b[c] = b;
         batch->along[c] = c2;
         batch->across[c] = b * sqrtf(c2);
     }
@@ -279,7 +282,8 @@ FORCE_INLINE uint32_t kick_all(struct dsmc *dsmc, const struct batch *batch)
     return collisions;
 }
 
-FORCE_INLINE uint32_t collide_all(struct dsmc *dsmc, const struct batch *batch, unsigned flags)
+FORCE_INLINE uint32_t collide_all(struct dsmc *dsmc, const struct batch *batch, double *impacts,
+                                  unsigned flags)
 {
     const bool printed = printed_speed > 0;
     uint32_t collisions = 0;
@@ -290,6 +294,7 @@ FORCE_INLINE uint32_t collide_all(struct dsmc *dsmc, const struct batch *batch, 
         const float g2 = gx * gx + gy * gy, s = batch->along[c], t = batch->across[c];
         if (printed ? g2 >= batch->least[c] : g2 <= batch->least[c]) continue;
         collisions++;
+        if (flags & NOTED && impacts) dsmc_note_impact(dsmc, impacts, batch->b[c]);
         collide_pair(dsmc, i, j, gx * s - gy * t, gy * s + gx * t, gx, gy, flags);
     }
     return collisions;
@@ -307,7 +312,7 @@ FORCE_INLINE void collide_block(struct block *block, unsigned flags)
         work_out(block, &batch);
         const bool simple = flags == 0 && !(printed_speed > 0);
         const uint32_t collisions = simple ? kick_all(dsmc, &batch)
-                                           : collide_all(dsmc, &batch, flags);
+                                           : collide_all(dsmc, &batch, block->impacts, flags);
         block->collisions += collisions;
         block->rejected += batch.count - collisions;
     }
@@ -348,11 +353,12 @@ void dsmc_collide(struct dsmc *dsmc, uint32_t number, struct dsmc_sums *sums)
 {
     const unsigned flags = (dsmc->settings.method == DSMC_DENSE ? DISPLACE : 0)
                          | (dsmc->spins ? ROUGH : 0)
-                         | (dsmc->contacts || dsmc->full ? NOTED : 0);
+                         | (dsmc->contacts || dsmc->full || sums->impacts ? NOTED : 0);
     struct block block;
     const uint32_t cell = dsmc_collide_cell(dsmc, number), row = cell / dsmc->ax.cells;
     const uint32_t x0 = cell % dsmc->ax.cells, wide = dsmc->ax.cells - x0;
     block.dsmc = dsmc;
+    block.impacts = sums->impacts;
     block.cell = cell;
     block.cells = wide < DSMC_BLOCK ? wide : DSMC_BLOCK;
     if (dsmc->first[cell + block.cells] - dsmc->first[cell] < 2) return;

@@ -41,6 +41,7 @@ struct sweep {
     uint64_t key;               /* of the random numbers of this step */
     uint32_t block;             /* of this stripe: where impulses on obstacles are summed up */
     uint64_t collisions, rejected;
+    double  *impacts;           /* of this thread; NULL if nobody asks */
     bool moved;                 /* has a grain changed its cell? */
 };
 
@@ -122,6 +123,7 @@ static float bump(struct sweep *sweep, uint32_t i, uint32_t cell, uint32_t to, s
         q->vx += blow * nx;
         q->vy += blow * ny;
         sweep->collisions++;
+        if (sweep->impacts) dsmc_note_impact(dsmc, sweep->impacts, s);
     }
     const float ux = p->vx - q->vx, uy = p->vy - q->vy;
     if (j != i && dsmc->tags[j] & DSMC_RESTS) {
@@ -373,6 +375,7 @@ void dsmc_heap_sweep(struct dsmc *dsmc, struct dsmc_sums *sums)
     const uint32_t count = stripe_count(dsmc, shift);
     const bool freely = !dsmc->walls.first && !(dsmc->effects & EFFECT_SHEAR);
     sweep.key = rng.state;
+    sweep.impacts = sums->impacts;
 #pragma omp for
     for (uint32_t c = 0; c < dsmc->cells; c++) {
         dsmc->load[c] = (uint16_t)(dsmc->first[c + 1] - dsmc->first[c]);

@@ -317,9 +317,19 @@ static void do_blocks(struct dsmc *dsmc, const struct dsmc_flight *flight, uint3
     }
 }
 
+static void collect_impacts(struct dsmc *dsmc)
+{
+    const uint32_t bins = dsmc->tally.impact.bins;
+    for (uint32_t k = 0; dsmc->impacts && k < bins * dsmc->threads; k++) {
+        dsmc->tally.impact.count[k % bins] += dsmc->impacts[k];         /* whole numbers: exact */
+        dsmc->impacts[k] = 0;
+    }
+}
+
 /* What changes the number of grains, or needs them one after the other. */
 static void do_alone(struct dsmc *dsmc)
 {
+    collect_impacts(dsmc);
     for (uint32_t t = 0; t < dsmc->threads; t++) dsmc->unsorted |= dsmc->sums[t].moved;
     dsmc_walls_collect(dsmc);
     dsmc->steps++;
@@ -336,7 +346,8 @@ static void do_share(struct dsmc *dsmc, const struct dsmc_flight *flight, uint32
     uint32_t *places = dsmc->places + (size_t)t * dsmc->cells;
     uint32_t first = dsmc->first[dsmc_collide_cell(dsmc, from)];
     uint32_t last = dsmc->first[dsmc_collide_cell(dsmc, to)];
-    struct dsmc_sums sums = {0};
+    struct dsmc_sums sums = {
+        .impacts = dsmc->impacts ? dsmc->impacts + (size_t)t * dsmc->tally.impact.bins : NULL};
     memset(places, 0, dsmc->cells * sizeof *places);
     do_blocks(dsmc, flight, from, to, places, &sums);
     dsmc->sums[t] = sums;

@@ -91,7 +91,8 @@ static uint64_t fingerprint(const struct ed *ed)
     const struct scene *s = ed->scene;
     uint64_t hash = ARCHIVE_HASH_START;
 #define PRINT(value) hash = archive_hash(hash, &(value), sizeof (value))
-    PRINT(s->effects); PRINT(s->shear_rate); PRINT(s->box); PRINT(s->gravity); PRINT(s->left); PRINT(s->right);
+    PRINT(s->shear_rate);
+    PRINT(s->effects); PRINT(s->box); PRINT(s->gravity); PRINT(s->left); PRINT(s->right);
     PRINT(s->bottom); PRINT(s->top); PRINT(s->wall_count); PRINT(ed->cells.nx); PRINT(ed->cells.ny);
     PRINT(ed->settings.margin); PRINT(ed->cells.block_count);
     for (uint32_t k = 0; k < s->wall_count; k++) {

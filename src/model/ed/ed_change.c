@@ -81,13 +81,17 @@ static void bounce(struct ed *ed, uint32_t i, uint32_t w, const struct ed_touch 
     r = elastic ? 1 : ed_law_restitution(law, r, closing);
     e->last = now;
     const double away = fmax(r * closing, bounce_least * 0.5 * touch->press * law->t_c);
-    const double dvn = away - touch->vn;
+    double dvn = away - touch->vn;
     double dvt = 0;
     if (ed->spin) {
         const double q = law->inertia_factor[species];
         const double slip = touch->vt - radius * ed->spin[i] - ed->walls.walls[w].surface_speed
                             * ed_walls_surface(ed, w, touch);
-        dvt = ed_law_tangential(pair, slip, (1 + 1 / q) / m, m * dvn) / m;
+        const double mobility = (1 + 1 / q) / m;
+        dvt = ed_law_tangential(pair, slip, mobility, m * dvn) / m;
+        if (elastic && law->keeps_energy) {
+            dvn = ed_law_return(away, slip, mobility, m * dvt, m) - touch->vn;
+        }
         const double dspin = -dvt / (q * radius);
         ed->spin[i] += dspin;
         ed->angle[i] -= dspin * now;

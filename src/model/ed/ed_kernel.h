@@ -129,7 +129,8 @@ FORCE_INLINE void conclude(struct ed *ed, uint32_t i, int with)
     const double s = crossing(ed, i, with);
     if (with & WITH_SOLIDS) {
         uint32_t partner = ED_NOBODY;
-        const double met = ed_walls_meet(ed, i, s, &partner);
+        const double met = ed_walls_meet(ed, i, scan_least(s, e->contact - ed->clock.now),
+                                         &partner);
         if (ed->clock.now + met < e->contact) {
             e->contact = ed->clock.now + met;
             e->partner = partner;
@@ -323,8 +324,8 @@ FORCE_INLINE void collide(struct ed *ed, uint32_t i, int with)
     }
     e->last = f->last = now;
     const double share = with & WITH_SIZES ? ed->mass[j] / (ed->mass[i] + ed->mass[j]) : 0.5;
-    const double normal = (1 + r) * closing * share;            /* change of i's velocity, -n */
-    double sx = -normal * nx, sy = -normal * ny;
+    double normal = (1 + r) * closing * share;                  /* change of i's velocity, -n */
+    double sx = 0, sy = 0;
     if (with & WITH_SPINS) {
         /* The normal of cooperative (1) points to body 1: i's is -n, so t = (ny, -nx). */
         const double tx = ny, ty = -nx, mi = ed_mass(ed, i), mj = ed_mass(ed, j);
@@ -334,11 +335,17 @@ FORCE_INLINE void collide(struct ed *ed, uint32_t i, int with)
         const double slip = -(a.du * tx + a.dv * ty) - ri * ed->spin[i] - rj * ed->spin[j];
         const double mobility = (1 + 1 / qi) / mi + (1 + 1 / qj) / mj;
         const double impulse = ed_law_tangential(pair, slip, mobility, normal * mi);
-        sx += impulse / mi * tx;
-        sy += impulse / mi * ty;
+        if (elastic && ed->law.keeps_energy) {
+            const double back = ed_law_return(closing, slip, mobility, impulse, share * mi);
+            normal = (closing + back) * share;
+        }
+        sx = impulse / mi * tx;
+        sy = impulse / mi * ty;
         turn(ed, i, -impulse / (qi * mi * ri));
         turn(ed, j, -impulse / (qj * mj * rj));
     }
+    sx -= normal * nx;
+    sy -= normal * ny;
     const double back = with & WITH_SIZES ? ed->mass[i] / ed->mass[j] : 1;
     kick(ed, i, sx, sy);
     kick(ed, j, -sx * back, -sy * back);

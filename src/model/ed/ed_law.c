@@ -53,6 +53,7 @@ bool ed_law_create(struct ed_law *law, const struct scene *scene,
 {
     const uint32_t n = scene->species_count;
     *law = (struct ed_law){.species_count = n, .t_c = settings->t_c,
+                           .keeps_energy = settings->elastic == ED_ELASTIC_WHOLE,
                            .exponent = settings->exponent,
                            .per_speed = 1 / settings->reference_speed};
     if (!arena_array(arena, &law->pairs, (size_t)n * n)

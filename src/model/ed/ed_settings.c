@@ -17,6 +17,11 @@ static const struct key keys[] = {
     {"t_c", KEY_REAL, AT(t_c), "nan", 0, NAN, "time", NULL,
      "cut-off time: a grain whose last contact is younger collides elastically; 0: plain ED, which "
      "stops where inelastic collapse begins; absent: 1e-2 sqrt(d/g), or 1e-5 d/v without gravity"},
+    {"elastic", KEY_CHOICE, AT(elastic), "normal", NAN, NAN, NULL, "normal|whole",
+     "what a contact within t_c keeps: normal, the normal speed, while friction goes on losing "
+     "energy (cooperative, eq. 7), so that rough beds at rest collide ever faster; whole, the "
+     "energy: what friction takes of the slip is given back along the normal, so that they rest at "
+     "about one contact in t_c"},
     {"restitution", KEY_REAL, AT(restitution), "nan", 0, 1, "1", NULL,
      "of grains that tell only a stiffness and a damping, as soft discs do; absent: derived from "
      "them"},
@@ -118,8 +123,8 @@ static void complete_restitution(struct scene *scene, const struct ed_settings *
             snprintf(speed, sizeof speed, " at %.4g %s", settings->reference_speed,
                      scene_unit(scene, "speed"));
         }
-        findings_tell(findings, scene, FINDING_WARNING, key, "hard discs take their restitution from "
-            "stiffness and damping, as of a %s force: %.4g between grains, %.4g at walls%s; "
+        findings_tell(findings, scene, FINDING_WARNING, key, "hard discs take their restitution "
+            "from stiffness and damping, as of a %s force: %.4g between grains, %.4g at walls%s; "
             "ed.restitution sets another", settings->force == ED_HERTZ ? "hertz" : "linear",
             ed_law_derived(species, species, settings, false),
             ed_law_derived(species, species, settings, true), speed);

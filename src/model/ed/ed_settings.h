@@ -8,10 +8,12 @@
 #include "scene/scene.h"
 
 enum ed_force { ED_LINEAR, ED_HERTZ };
+enum ed_elastic { ED_ELASTIC_NORMAL, ED_ELASTIC_WHOLE };
 enum ed_vectors { ED_VECTORS_AUTO, ED_VECTORS_NONE };
 
 struct ed_settings {
     double t_c;                 /* TC rule: after a contact a grain stays elastic for so long */
+    int    elastic;             /* enum ed_elastic: what a contact within t_c keeps */
     double restitution;         /* of species that have none of their own; NAN: derived */
     int    force;               /* enum ed_force: what their stiffness and damping mean */
     double tangential;          /* beta0, largest tangential restitution */

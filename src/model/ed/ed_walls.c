@@ -49,7 +49,7 @@ static bool closes(const struct ed *ed, double vn, double press)
 {
     if (vn < -ed->clock.noise) return true;
     const double g = fabs(ed->gx) + fabs(ed->gy);
-    return vn < ed->clock.noise && press > press_least * g && press > 0;
+    return vn <= ed->clock.noise && press > press_least * g && press > 0;
 }
 
 static bool within_arc(const struct wall *wall, double x, double y)
@@ -94,11 +94,21 @@ static double segment_meets(const struct ed *ed, const struct wall *wall, struct
     return soonest;
 }
 
+/* Is a circle about the origin farther away than the path can go in s_max? */
+static bool stays_off(const struct ed_path *p, double rho, double s_max)
+{
+    const double way = s_max * (fabs(p->vx) + fabs(p->vy)
+                                + 0.5 * s_max * (fabs(p->ax) + fabs(p->ay)));
+    const double near = rho + way;
+    return p->x * p->x + p->y * p->y > near * near * (1 + 1e-12);
+}
+
 /* A circle about the origin, of radius rho for the grain's centre, from outside (sign 1) or inside
  * (-1); `arc` restricts the angle (NULL: none). */
 static double circle_meets(const struct ed *ed, const struct wall *arc, struct ed_path p,
                            double rho, int sign, double s_max, bool touching)
 {
+    if (sign > 0 && stays_off(&p, rho, s_max)) return INFINITY;
     double c[5] = {
         sign * (p.x * p.x + p.y * p.y - rho * rho),
         sign * 2 * (p.x * p.vx + p.y * p.vy),
@@ -229,8 +239,9 @@ double ed_walls_meet(const struct ed *ed, uint32_t i, double s_max, uint32_t *pa
         const struct ed_path p = relative(path, now, ed->clock.now);
         for (int part = ED_PART_FACE; part <= ED_PART_SECOND_END; part++) {
             if (part != ED_PART_FACE && !now->ends[part - 1]) continue;
-            const double s = part == ED_PART_FACE ? face_meets(ed, wall, p, reach, s_max)
-                                                  : end_meets(ed, wall, part - 1, p, reach, s_max);
+            const double most = fmin(s_max, soonest);
+            const double s = part == ED_PART_FACE ? face_meets(ed, wall, p, reach, most)
+                                                  : end_meets(ed, wall, part - 1, p, reach, most);
             if (!(s < soonest)) continue;
             soonest = s;
             *partner = ED_SOLID | (uint32_t)part << ED_PART_SHIFT | w;

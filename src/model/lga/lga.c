@@ -391,6 +391,7 @@ const struct model model_lga = {
     .advance  = lga_advance,
     .observe  = lga_look_list,
     .sample   = lga_look_sample,
+    .ground   = lga_look_ground,
     .archive  = lga_archive,
     .count    = lga_count,
 };

@@ -236,6 +236,7 @@ struct field;
 struct grains;
 void lga_look_list(const void *state, struct grains *out);
 bool lga_look_sample(const void *state, struct field *field);
+char lga_look_ground(const void *state, double x, double y);
 
 /* lga_step.c: one tick by any rules, and the streaming that they share.  Allocation takes an empty
  * `lga` whose lattice, rule and sites are set. */

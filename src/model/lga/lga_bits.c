@@ -119,7 +119,7 @@ bool lga_bits_allocate(struct lga *lga)
     const uint32_t rows = lga->lattice.rows, threads = (uint32_t)omp_get_max_threads();
     bits->words = lga->words;
     bits->stride = bits->words + 2 * LGA_LANES;
-    bits->bands = rows / 2 < threads ? rows / 2 : threads;
+    bits->bands = lga->sites < LGA_LOOP_MIN ? 1 : rows / 2 < threads ? rows / 2 : threads;
     const bool sandpile = lga->rule.method == LGA_SANDPILE, gmlg = lga->rule.method == LGA_GMLG;
     bits->depth = gmlg ? LGA_GMLG_PLANES : LGA_PLANES;
     const size_t ring = (size_t)LGA_RING * LGA_RING_PLANES * bits->stride;
@@ -276,13 +276,14 @@ void lga_bits_step(struct lga *lga)
     if (lga->rule.method == LGA_SANDPILE) {
         collisions += lga_bits_sand_stop(lga, kernels[lga->simd]);
     }
-    #pragma omp parallel for schedule(static, 1) reduction(+ : collisions)
+    #pragma omp parallel for schedule(static, 1) reduction(+ : collisions) if (bits->bands > 1)
     for (uint32_t band = 0; band < bits->bands; band++) {
         const uint32_t y0 = lga_bits_band(lga, band), y1 = lga_bits_band(lga, band + 1);
         collisions += prepare(lga, y0, band, 0, effects);
         collisions += prepare(lga, y1 - 1, band, 1, effects);
     }
-    #pragma omp parallel for schedule(static, 1) reduction(+ : collisions, left)
+    #pragma omp parallel for schedule(static, 1) reduction(+ : collisions, left) \
+        if (bits->bands > 1)
     for (uint32_t band = 0; band < bits->bands; band++) {
         const struct passed sum = pass_band(lga, band, effects);
         collisions += sum.collisions;
@@ -310,7 +311,7 @@ void lga_bits_set_kinds(struct lga *lga, uint32_t row, const uint8_t *kind)
 void lga_bits_rasterise(struct lga *lga, double t)
 {
     const struct lga_bits *bits = lga->bits;
-    #pragma omp parallel for schedule(static, 1)
+    #pragma omp parallel for schedule(static, 1) if (bits->bands > 1)
     for (uint32_t band = 0; band < bits->bands; band++) {
         uint8_t *kind = bits->kinds + (size_t)band * lga->lattice.columns;
         for (uint32_t row = lga_bits_band(lga, band); row < lga_bits_band(lga, band + 1); row++) {

@@ -217,12 +217,13 @@ void lga_bits_gmlg_step(struct lga *lga, const struct lga_kernel *kernel)
 {
     const uint32_t bands = lga->bits->bands;
     uint64_t collisions = 0, refused = 0, gone = 0;
-    #pragma omp parallel for schedule(static, 1)
+    #pragma omp parallel for schedule(static, 1) if (bands > 1)
     for (uint32_t b = 0; b < bands; b++) {
         struct band band = band_of(lga, kernel, b);
         prepare_ends(&band);
     }
-    #pragma omp parallel for schedule(static, 1) reduction(+ : collisions, refused, gone)
+    #pragma omp parallel for schedule(static, 1) reduction(+ : collisions, refused, gone) \
+        if (bands > 1)
     for (uint32_t b = 0; b < bands; b++) {
         struct band band = band_of(lga, kernel, b);
         pass_band(&band);

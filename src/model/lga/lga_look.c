@@ -86,6 +86,13 @@ void lga_look_list(const void *state, struct grains *out)
     }
 }
 
+char lga_look_ground(const void *state, double x, double y)
+{
+    const struct lga *lga = state;
+    const uint8_t kind = lga_node_get(lga, lga_lattice_nearest(&lga->lattice, x, y)).kind;
+    return kind == LGA_WALL ? '#' : kind == LGA_SINK ? 'v' : ' ';
+}
+
 /* --- sampling --- */
 
 /* A sample in the making.  A row of nodes lies in one row of cells (of columns, if the lattice is

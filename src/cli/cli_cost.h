@@ -1,0 +1,17 @@
+/* cli_cost.h - `run` takes its setting from what `cost` measured.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#ifndef CLI_COST_H
+#define CLI_COST_H
+
+#include "cli/options.h"
+
+#include <jansson.h>
+
+/* With --accuracy or --budget: adds the keys of the fastest (nearest) setting that holds it, from
+ * NAME-cost/cost.json.  The keys live in `table`, which the caller gives back with json_decref
+ * when the options are no longer used; NULL without these options. */
+bool cli_cost_choose(struct options *options, json_t **table, struct error *error);
+
+#endif

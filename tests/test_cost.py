@@ -1,0 +1,99 @@
+"""test_cost.py - `cost` measures errors that are known, and `run` chooses by what it wrote.
+
+SPDX-License-Identifier: GPL-3.0-or-later
+"""
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = os.path.abspath(sys.argv.pop(1))
+
+# An elastic gas: the energy is the same for every model at all times, but for soft discs, which
+# keep some of it in overlaps.
+SCENE = """
+model = "ed"; until = 4; box = [0, 0, 24, 24];
+left = "periodic"; right = "periodic"; bottom = "periodic"; top = "periodic";
+grains = ({ radius = 0.5; density = 1.2732; restitution = %s; stiffness = 1e4; });
+placements = ({ kind = "square"; spacing = 2.4; temperature = 1; });
+measure = { cost = %s; };
+overlap_limit = 1.0;
+"""
+
+
+class Cost(unittest.TestCase):
+    def setUp(self):
+        self.home = tempfile.TemporaryDirectory()
+        self.folder = self.home.name
+
+    def tearDown(self):
+        self.home.cleanup()
+
+    def call(self, *arguments):
+        return subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True,
+                              text=True, check=False, timeout=300)
+
+    def write(self, restitution="1", observables='["energy"]'):
+        with open(os.path.join(self.folder, "gas.cfg"), "w", encoding="utf-8") as out:
+            out.write(SCENE % (restitution, observables))
+
+    def measure(self, *more):
+        done = self.call("cost", "gas.cfg", "--seeds", "2", "--json", *more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return {point["setting"]: point for point in json.loads(done.stdout)["points"]}
+
+    def test_an_elastic_gas_keeps_its_energy_in_every_model_of_free_grains(self):
+        self.write()
+        points = self.measure()
+        # Hard discs lose nothing; single precision of DSMC some 1e-7 a collision.
+        self.assertLess(points["ed ed.t_c=*100"]["error"], 1e-9)
+        self.assertLess(points["dsmc"]["error"], 1e-4)
+        # In the mean soft discs spend a share of the time in contact, and have the energy there.
+        self.assertLess(points["md"]["error"], 0.05)
+        # The reference has no error, and something is on the front.
+        self.assertEqual(points["ed"]["error"], 0)
+        self.assertTrue(points["ed"]["reference"])
+        self.assertTrue(any(point["front"] for point in points.values()))
+        with open(os.path.join(self.folder, "gas-cost", "cost.csv"), encoding="utf-8") as table:
+            rows = list(csv.DictReader(table))
+        self.assertEqual(len(rows), len(points))
+
+    def test_a_lossy_gas_without_losses_by_the_cut_off_time_is_far_off(self):
+        # With t_c longer than the time between collisions all but the first are elastic.
+        self.write("0.6")
+        points = self.measure("-s", "ed.t_c=1e-3")
+        self.assertGreater(points["ed ed.t_c=*1000"]["error"], 0.2)
+        self.assertLess(points["ed ed.t_c=*10"]["error"], points["ed ed.t_c=*1000"]["error"])
+
+    def test_run_takes_the_fastest_setting_that_is_near_enough(self):
+        self.write()
+        points = self.measure()
+        done = self.call("run", "gas.cfg", "--accuracy", "1%", "-o", "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        near = {name: point for name, point in points.items()
+                if max(point["error"], point["error_noise"]) <= 0.01}
+        fastest = min(near, key=lambda name: near[name]["wall_seconds"])
+        self.assertIn(f"cost.json: {fastest},", done.stderr)
+        with open(os.path.join(self.folder, "out", "manifest.json"), encoding="utf-8") as text:
+            manifest = json.load(text)
+        self.assertEqual(manifest["model"], fastest.split()[0])
+        self.assertIn("friction", manifest["effects_left_out"])
+        self.assertGreater(manifest["seconds"]["per_simulated_time"], 0)
+
+    def test_run_asks_for_a_measurement_that_is_not_there(self):
+        self.write()
+        done = self.call("run", "gas.cfg", "--budget", "60s")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("sandreel cost gas.cfg", done.stderr)
+
+    def test_an_observable_that_does_not_exist_is_an_error_of_the_scene(self):
+        self.write(observables='["enegry"]')
+        done = self.call("cost", "gas.cfg")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("enegry", done.stderr)
+
+
+unittest.main()

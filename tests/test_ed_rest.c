@@ -1,0 +1,127 @@
+/* test_ed_rest.c - nothing hangs: stuck clocks, events at one time, books of energy, and beds that
+ * rest.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#include "scenes.h"
+
+static double energy(const struct scenes_run *run)
+{
+    const struct counters c = simulation_count(&run->sim);
+    return c.kinetic_energy + c.rotational_energy + c.potential_energy;
+}
+
+/* A rough bed of some 40 grains that is poured and comes to rest. */
+#define BED(elastic)                                                                    \
+    "until = 60.0; box = [0.0, 0.0, 8.0, 20.0]; gravity = (0.0, -1.0);"                 \
+    "grains = ({ radius = 0.5; restitution = 0.6; friction = 0.5; });"                  \
+    "placements = ({ region = [0.5, 1.0, 7.5, 9.0]; spacing = 1.1; temperature = 0.2; });" \
+    "ed = { t_c = 1e-2; elastic = \"" elastic "\"; };"
+
+static void test_a_rough_bed_rests_with_fewer_events_if_contacts_keep_their_energy(void **unused)
+{
+    (void)unused;
+    const char *const scenes[2] = {BED("normal"), BED("whole")};
+    double events[2], height[2];
+    for (int k = 0; k < 2; k++) {
+        struct scenes_run *run = scenes_begin(scenes[k], "ed");
+        scenes_advance(run, 20);
+        const struct counters a = simulation_count(&run->sim);
+        scenes_advance(run, 25);
+        const struct counters b = simulation_count(&run->sim);
+        events[k] = (double)(b.steps - a.steps) / (double)b.grains;
+        height[k] = b.potential_energy;
+        /* Agitation of a bed ten grains deep: 10 g t_c at most, (0.1)^2 / 2 a grain of mass 0.8. */
+        CHECK(b.kinetic_energy / (double)b.grains < 4e-3);
+        scenes_end(run);
+    }
+    print_message("events a grain in 500 t_c: %.0f and %.0f\n", events[0], events[1]);
+    CHECK(events[1] < 0.5 * events[0]);
+    CHECK_NEAR(height[1] / height[0], 1, 0.05);
+}
+
+static void test_a_rough_contact_within_the_cut_off_keeps_energy_and_momentum(void **unused)
+{
+    (void)unused;
+    /* With a cut-off longer than the run, every contact of a rough gas but each grain's first is
+     * within it: after those first ones nothing is lost. */
+    struct scenes_run *run = scenes_begin("until = 1e3; box = [0.0, 0.0, 12.0, 12.0];"
+        "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";"
+        "grains = ({ radius = 0.5; restitution = 0.7; friction = 0.4; });"
+        "placements = ({ spacing = 1.3; temperature = 1.0; });"
+        "ed = { t_c = 1e6; elastic = \"whole\"; };", "ed");
+    scenes_advance(run, 20);
+    const double e = energy(run), px = simulation_count(&run->sim).momentum_x;
+    scenes_advance(run, 100);
+    CHECK(simulation_count(&run->sim).collisions_elastic > 10000);
+    /* 1e5 collisions that round by 1e-16 each, at random. */
+    CHECK_NEAR(energy(run) / e, 1, 1e-12);
+    CHECK_NEAR(simulation_count(&run->sim).momentum_x, px, 1e-11);
+    scenes_end(run);
+}
+
+static void test_energy_lost_is_what_the_collisions_took(void **unused)
+{
+    (void)unused;
+    /* Two discs, one blow: m12 (1 - r^2) v_n^2 / 2 is lost, v_n = v cos(asin b/d). */
+    struct scenes_run *run = scenes_begin("until = 20.0; box = [-10.0, -10.0, 10.0, 10.0];"
+        "grains = ({ radius = 0.5; restitution = 0.7; });"
+        "placements = ({ region = [-5.5, -0.5, -4.5, 0.5]; kind = \"square\"; count = 1;"
+        "                velocity = (1.0, 0.0); },"
+        "              { region = [-0.5, 0.1, 0.5, 1.1]; kind = \"square\"; count = 1; });", "ed");
+    const double before = energy(run), m = 2 * before;
+    scenes_advance(run, 6);
+    CHECK_NEAR(before - energy(run), 0.25 * m * (1 - 0.49) * 0.64, 1e-13);
+    scenes_end(run);
+}
+
+static void test_many_events_at_one_time_are_all_carried_out(void **unused)
+{
+    (void)unused;
+    /* Rows of a perfect lattice fly against each other: all blows fall on one instant. */
+    struct scenes_run *run = scenes_begin("until = 100.0; box = [0.0, 0.0, 30.0, 8.0];"
+        "grains = ({ radius = 0.5; restitution = 1.0; });"
+        "placements = ({ region = [0.0, 0.0, 30.0, 1.25]; kind = \"square\"; spacing = 1.25;"
+        "                velocity = (0.0, 1.0); },"
+        "              { region = [0.0, 6.75, 30.0, 8.0]; kind = \"square\"; spacing = 1.25;"
+        "                velocity = (0.0, -1.0); });", "ed");
+    const uint32_t n = run->scene->placed.count / 2;
+    CHECK(n >= 20);
+    /* Rows meet when their centres are 1 apart, come back from the walls, and meet again: 8 - 2
+     * diameters of free height, there and back. */
+    const struct placed *placed = &run->scene->placed;
+    const double meet = 0.5 * (placed->y[n] - placed->y[0] - 1), again = meet + 6;
+    scenes_advance(run, meet - 1e-9);
+    CHECK(simulation_count(&run->sim).collisions == 0);
+    scenes_advance(run, meet + 1e-9);
+    CHECK(simulation_count(&run->sim).collisions == n);
+    scenes_advance(run, again + 1e-9);
+    CHECK(simulation_count(&run->sim).collisions == 2 * n);
+    scenes_end(run);
+}
+
+static void test_a_clock_that_stands_still_is_noticed_and_named(void **unused)
+{
+    (void)unused;
+    /* Plain ED, a lossy ball on a floor: infinitely many bounces before t = 3 t_fall. */
+    struct scenes_run *run = scenes_begin("until = 100.0; box = [0.0, 0.0, 9.0, 20.0];"
+        "gravity = (0.0, -1.0); grains = ({ radius = 0.5; restitution = 0.5; });"
+        "placements = ({ region = [4.0, 8.0, 5.0, 9.0]; kind = \"square\"; count = 1; });"
+        "ed = { t_c = 0.0; };", "ed");
+    struct error error = {.text = ""};
+    CHECK(simulation_advance(&run->sim, 100, 50000000, &error) == ADVANCE_BROKEN);
+    CHECK(strstr(error.text, "time stopped at 12") && strstr(error.text, "ed.t_c"));
+    scenes_end(run);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_rough_bed_rests_with_fewer_events_if_contacts_keep_their_energy),
+        cmocka_unit_test(test_a_rough_contact_within_the_cut_off_keeps_energy_and_momentum),
+        cmocka_unit_test(test_energy_lost_is_what_the_collisions_took),
+        cmocka_unit_test(test_many_events_at_one_time_are_all_carried_out),
+        cmocka_unit_test(test_a_clock_that_stands_still_is_noticed_and_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
