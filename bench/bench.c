@@ -9,6 +9,7 @@
 #include "bench/bench_dsmc.h"
 #include "bench/bench_ed.h"
 #include "bench/bench_lga.h"
+#include "bench/bench_live.h"
 #include "bench/bench_md.h"
 #include "draw/painter.h"
 #include "measure/map.h"
@@ -245,6 +246,16 @@ static bool measure_frame(const struct bench_case *which, struct bench_result *r
     return done;
 }
 
+/* A live session that is watched (bench_live.h); `amount` says which of its numbers. */
+static bool measure_live(const struct bench_case *which, struct bench_result *result,
+                         struct error *error)
+{
+    const double cpu = clock_process(), wall = clock_wall();
+    if (!bench_live((enum bench_live_what)which->amount, &result->value, error)) return false;
+    stop(result, cpu, wall);
+    return true;
+}
+
 static const char gas_scene[] =
     "until = 1000.0; box = (0.0, 0.0, 280.0, 280.0);\n"
     "left = \"periodic\"; right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";\n"
@@ -299,6 +310,12 @@ const struct bench_case bench_list[] = {
      .amount = 5e3},
     {"frame-1e5", "drawing and encoding 100,000 grains, 1280 x 720", "cpu-ms", false, measure_frame,
      .amount = 1e5},
+    {"live-pictures", "20,000 discs simulated and watched, 1280 x 720", "pictures/s", true,
+     measure_live, .amount = BENCH_LIVE_PICTURES},
+    {"live-delay", "the same: from a command to its picture", "ms", false, measure_live,
+     .amount = BENCH_LIVE_DELAY},
+    {"live-kept", "the same: speed with a viewer of 10 pictures/s over that without", "times",
+     true, measure_live, .amount = BENCH_LIVE_KEPT},
     {0}
 };
 

@@ -18,8 +18,8 @@ static const uint8_t frame_options[] = {OPTION_output, OPTION_force, OPTION_time
     OPTION_reference, OPTION_tolerance, LOOK, SIMULATING, ALWAYS};
 static const uint8_t movie_options[] = {OPTION_output, OPTION_force, OPTION_side_by_side,
     OPTION_fps, OPTION_every, LOOK, SIMULATING, ALWAYS};
-static const uint8_t live_options[] = {OPTION_web, OPTION_commands, OPTION_output, OPTION_force, LOOK,
-    SIMULATING, ALWAYS};
+static const uint8_t live_options[] = {OPTION_web, OPTION_commands, OPTION_output, OPTION_force,
+    LOOK, SIMULATING, ALWAYS};
 static const uint8_t replay_options[] = {OPTION_output, OPTION_force, OPTION_threads, OPTION_help,
     OPTION_COUNT};
 static const uint8_t map_options[] = {OPTION_output, OPTION_force, OPTION_field, OPTION_time,
@@ -65,10 +65,10 @@ const struct command cli_commands[] = {
      "(--model md,lga) or several scenes and runs into one picture; --size is that of one panel.\n",
      movie_options, 1, OPTIONS_OPERANDS_MAX, cli_movie},
     {"live", "SCENE|RUN", "watches and steers a simulation while it runs",
-     "In the terminal, unless --web prints an address for a browser; --commands FILE carries out a\n"
-     "file of commands, and ends unless --web goes on.  A run goes on from its newest checkpoint.  The session is\n"
-     "written down in a directory, NAME-live unless -o says another; `sandreel replay` repeats\n"
-     "it.  docs/live.md lists the commands.\n",
+     "In the terminal, unless --web prints an address for a browser.  --commands FILE carries out\n"
+     "a file of commands, and ends unless --web goes on.  A run goes on from its newest\n"
+     "checkpoint.  The session is written down in a directory, NAME-live unless -o says another;\n"
+     "`sandreel replay` repeats it.  docs/live.md lists the commands.\n",
      live_options, 1, 1, cli_live},
     {"replay", "RUN", "repeats a live session from its log, to the same bytes",
      "Writes beside it, RUN-replay unless -o says another.  Exit code 4 if it comes to another\n"

@@ -62,7 +62,9 @@ static _Noreturn void watch(int line, const struct termios *found)
 static bool start_watcher(struct tty *tty, struct error *error)
 {
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) return error_set(error, "no pipe for a watcher: %s", strerror(errno));
+    if (pipe2(ends, O_CLOEXEC) != 0) {
+        return error_set(error, "no pipe for a watcher: %s", strerror(errno));
+    }
     tty->watcher = fork();
     if (tty->watcher == 0) {
         close(ends[1]);
