@@ -60,7 +60,7 @@ def write_scenes(folder):
         out.write(DISCS)
 
 
-def _fnv(data):
+def fnv(data):
     value = 14695981039346656037
     for byte in data:
         value = (value ^ byte) * 1099511628211 % 2**64
@@ -68,15 +68,15 @@ def _fnv(data):
 
 
 # What a checkpoint remembers of the clock, and the bytes of the log, which holds wall seconds.
-_TIMES = {_fnv(b"run.wall"), _fnv(b"log.size")}
-_HEADER = struct.Struct("<8sII24sQQQQQ")
+_TIMES = {fnv(b"run.wall"), fnv(b"log.size")}
+CHECKPOINT_HEADER = struct.Struct("<8sII24sQQQQQ")
 
 
 def _checkpoint(data):
     """The turn, the scene's text and every record but those that tell of wall time."""
-    fields = _HEADER.unpack_from(data)
+    fields = CHECKPOINT_HEADER.unpack_from(data)
     turn, scene_size = fields[4], fields[5]
-    at = _HEADER.size + scene_size
+    at = CHECKPOINT_HEADER.size + scene_size
     records = []
     while at < len(data):
         name, width, count = struct.unpack_from("<QQQ", data, at)
@@ -84,7 +84,7 @@ def _checkpoint(data):
         if name not in _TIMES:
             records.append((name, width, count, data[at + 24:at + 24 + size]))
         at += 24 + size
-    return turn, data[_HEADER.size:_HEADER.size + scene_size], records
+    return turn, data[CHECKPOINT_HEADER.size:CHECKPOINT_HEADER.size + scene_size], records
 
 
 def _manifest(data):
@@ -114,6 +114,11 @@ def _contents(path):
 def files(run):
     return sorted(os.path.relpath(os.path.join(where, name), run)
                   for where, _, names in os.walk(run) for name in names)
+
+
+def everything(run):
+    """The contents of every file, but for wall times."""
+    return {name: _contents(os.path.join(run, name)) for name in files(run)}
 
 
 def differences(one, other):

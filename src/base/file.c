@@ -92,6 +92,12 @@ bool file_exists(const char *path)
     return stat(path, &status) == 0;
 }
 
+bool file_absent(const char *path, struct error *error)
+{
+    return !file_exists(path) || error_set_code(error, EXIT_USAGE, "%s: is there already; "
+        "overwrite it with --force, or name another place with -o", path);
+}
+
 void file_sync(const char *path)
 {
     const int file = open(path, O_RDONLY | O_CLOEXEC);

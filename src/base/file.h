@@ -42,6 +42,9 @@ void *file_load(const char *path, size_t size_max, size_t *size, struct error *e
 
 bool file_exists(const char *path);
 
+/* True if there is no such file yet; else EXIT_USAGE, with --force and -o as the cure. */
+bool file_absent(const char *path, struct error *error);
+
 /* Brings a file that another program wrote, or the names in a directory, to the disk. */
 void file_sync(const char *path);
 

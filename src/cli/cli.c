@@ -14,15 +14,17 @@
 
 static const uint8_t run_options[] = {OPTION_output, SIMULATING, OPTION_resume, OPTION_time_limit,
     OPTION_accuracy, OPTION_budget, OPTION_dry_run, OPTION_force, OPTION_every, LOOK, ALWAYS};
-static const uint8_t frame_options[] = {OPTION_output, OPTION_time, LOOK, SIMULATING, ALWAYS};
-static const uint8_t movie_options[] = {OPTION_output, OPTION_side_by_side, OPTION_fps,
-    OPTION_every, LOOK, SIMULATING, ALWAYS};
+static const uint8_t frame_options[] = {OPTION_output, OPTION_force, OPTION_time,
+    OPTION_reference, OPTION_tolerance, LOOK, SIMULATING, ALWAYS};
+static const uint8_t movie_options[] = {OPTION_output, OPTION_force, OPTION_side_by_side,
+    OPTION_fps, OPTION_every, LOOK, SIMULATING, ALWAYS};
 static const uint8_t live_options[] = {OPTION_web, OPTION_commands, OPTION_output, OPTION_force,
     LOOK, SIMULATING, ALWAYS};
 static const uint8_t replay_options[] = {OPTION_output, OPTION_force, OPTION_threads, OPTION_help,
     OPTION_COUNT};
-static const uint8_t map_options[] = {OPTION_output, OPTION_field, OPTION_time, OPTION_average,
-    OPTION_as, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_size, OPTION_zoom, OPTION_theme,
+static const uint8_t map_options[] = {OPTION_output, OPTION_force, OPTION_field, OPTION_time,
+    OPTION_average, OPTION_as, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_size, OPTION_zoom,
+    OPTION_theme,
     OPTION_colormap, OPTION_scale, OPTION_map_range, OPTION_title, SIMULATING, ALWAYS};
 static const uint8_t export_options[] = {OPTION_to, OPTION_output, OPTION_frame, OPTION_time,
     OPTION_field, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_set, OPTION_help, OPTION_COUNT};
@@ -39,8 +41,8 @@ static const uint8_t sweep_options[] = {OPTION_vary, OPTION_random, OPTION_repea
     ALWAYS};
 static const uint8_t help_options[] = {OPTION_help, OPTION_COUNT};
 static const uint8_t version_options[] = {OPTION_json, OPTION_help, OPTION_COUNT};
-static const uint8_t bench_options[] = {OPTION_effects, OPTION_json, OPTION_output, OPTION_against,
-    OPTION_threads, OPTION_help, OPTION_COUNT};
+static const uint8_t bench_options[] = {OPTION_effects, OPTION_json, OPTION_output, OPTION_force,
+    OPTION_against, OPTION_threads, OPTION_help, OPTION_COUNT};
 static const uint8_t cost_options[] = {OPTION_output, OPTION_seeds, OPTION_time_limit, OPTION_json,
     OPTION_set, OPTION_until, OPTION_quick, OPTION_threads, OPTION_help, OPTION_COUNT};
 static const uint8_t stress_options[] = {OPTION_quick, OPTION_json, OPTION_threads, OPTION_help,
@@ -53,7 +55,10 @@ const struct command cli_commands[] = {
      "`sandreel run DIRECTORY --resume` goes on with an earlier run.\n",
      run_options, 1, 1, cli_run},
     {"frame", "SCENE|RUN", "draws one picture, from a run's dumps or simulated on the fly",
-     "Without -t the end is drawn.  The file is NAME.png unless -o says another.\n",
+     "Without -t the end is drawn.  The file is NAME.png unless -o says another; one that is there\n"
+     "already is overwritten only with --force.  --against REF.png compares: exit code 4, and\n"
+     "NAME-difference.png with the differing pixels in red, if any channel of any pixel differs\n"
+     "by more than --tolerance.\n",
      frame_options, 1, 1, cli_frame},
     {"movie", "SCENE|RUN...", "films a run, or a scene while it is simulated",
      "-o NAME.mp4, .webm or .gif; ffmpeg must be installed.  --side-by-side puts several models\n"

@@ -163,7 +163,11 @@ int cli_bench(const struct options *options)
     if (options_given(options, OPTION_effects)) return bench_effects(options);
     json_t *old = NULL;
     const uint32_t threads = opening_threads(options, &error);
-    if (threads == 0 || !check_names(options, &error)) return opening_fail(&error);
+    const char *output = options->values[OPTION_output];
+    const bool keeps = output && !options_given(options, OPTION_force);
+    if (threads == 0 || !check_names(options, &error) || (keeps && !file_absent(output, &error))) {
+        return opening_fail(&error);
+    }
     if (options_given(options, OPTION_against) && !(old = load_old(options, &error))) {
         return opening_fail(&error);
     }

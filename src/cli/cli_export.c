@@ -39,6 +39,7 @@ static bool export_frames(const struct options *options, const struct dumps *dum
     uint32_t first, last;
     if (!choose_frames(options, dumps, &first, &last, error)) return false;
     struct grains grains = {0};
+    const bool force = options_given(options, OPTION_force);
     bool done = true;
     for (uint32_t k = first; done && k <= last; k++) {
         const struct dump_entry *entry = &dumps->index.entries[k];

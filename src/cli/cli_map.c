@@ -91,6 +91,7 @@ int cli_map(const struct options *options)
         footage.report = opening_report;
         footage.context = &progress;
         footage.signal = &opening_signal;
+        mapper.keeps = !options_given(options, OPTION_force);
         done = make(options, &mapper, &footage, directory, &error);
         progress_end(&progress);
         if (done) printf("%s\n", directory);

@@ -99,6 +99,7 @@ static bool film(struct cast *cast, const struct options *options, struct error 
     snprintf(name, sizeof name, "%s.mp4", cast->setups[0].scene->name);
     const char *output = options->values[OPTION_output];
     if (!output) output = name;
+    if (!options_given(options, OPTION_force) && !file_absent(output, error)) return false;
     if (!progress_begin(&progress, options->values[OPTION_progress], error)) return false;
     for (uint32_t p = 0; p < cast->count; p++) {
         struct footage *footage = &cast->panels[p].footage;

@@ -35,7 +35,7 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(time_limit, "time-limit", 0, "S",     NULL, FORM_PLAIN,                                   \
       "stops after so much wall time (600, 90m, 12h), with a checkpoint and exit code 5")       \
     X(dry_run,   "dry-run",   0,   NULL,    NULL, FORM_PLAIN, "says what it would do, and ends") \
-    X(force,     "force",     'f', NULL,    NULL, FORM_PLAIN, "overwrites an earlier run")      \
+    X(force,     "force",     'f', NULL,    NULL, FORM_PLAIN, "overwrites what is there")       \
     X(progress,  "progress",  0,   "HOW",   NULL, FORM_PLAIN, "auto, bar, plain or none")       \
     X(time,      "time",      't', "T",     NULL, FORM_PLAIN, "at which time; default: the end") \
     X(size,      "size",      0,   "WxH",   "view.size", FORM_SIZE, "of the picture in pixels") \
@@ -108,6 +108,10 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(json,      "json",      0,   NULL,    NULL, FORM_PLAIN, "prints one JSON document")       \
     X(against,   "against",   0,   "OLD.json", NULL, FORM_PLAIN,                                \
       "prints ratios to an earlier bench")                                                      \
+    X(reference, "against",   0,   "REF.png", NULL, FORM_PLAIN,                                 \
+      "compares with this picture; exit code 4 and a picture of the difference")                \
+    X(tolerance, "tolerance", 0,   "N",     NULL, FORM_PLAIN,                                   \
+      "grey levels (0 to 255) that any channel may differ by; default: 0")                      \
     X(help,      "help",      'h', NULL,    NULL, FORM_PLAIN, "explains the command")
 
 enum option_id {

@@ -3,6 +3,7 @@
 
 #include "draw/colormap.h"
 #include "draw/percentile.h"
+#include "draw/shortage.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -23,7 +24,7 @@ void fieldlayer_range(const struct field *field, double range[2])
 {
     range[0] = 0;
     range[1] = 1;
-    float *const values = malloc((size_t)field->nx * field->ny * sizeof *values);
+    float *const values = shortage_check(malloc((size_t)field->nx * field->ny * sizeof *values));
     if (!values) return;
     uint32_t count = 0;
     for (uint32_t iy = 0; iy < field->ny; iy++) {

@@ -210,6 +210,9 @@ bool image_save(const struct image *image, const char *path, int level,
 
 /* ---- reading ---- */
 
+/* No deflated byte makes more than 1032 bytes (258 for two bits). */
+static const size_t deflate_most = 1032;
+
 struct decoder {
     png_structp png;
     png_infop info;
@@ -251,6 +254,10 @@ static bool decode_all(struct decoder *decoder, struct image *image)
     png_set_user_limits(png, IMAGE_SIDE_MAX, IMAGE_SIDE_MAX);
     png_set_chunk_malloc_max(png, 64u << 20);
     png_read_info(png, decoder->info);
+    const size_t raw = png_get_rowbytes(png, decoder->info);
+    if (raw * png_get_image_height(png, decoder->info) > deflate_most * decoder->size) {
+        png_error(png, "it is too short for its size");
+    }
     ask_for_rgba(decoder);
     const uint32_t width = png_get_image_width(png, decoder->info);
     const uint32_t height = png_get_image_height(png, decoder->info);
@@ -264,13 +271,27 @@ static bool decode_all(struct decoder *decoder, struct image *image)
     return true;
 }
 
-bool image_load(struct image *image, const char *path, struct error *error)
+/* Does every chunk end within the file?  libpng believes a chunk's length before it has read it,
+ * and takes up to 2 GB for it. */
+static bool chunks_fit(const uint8_t *bytes, size_t size)
+{
+    enum { SIGNATURE = 8, FRAME = 12 };         /* length, name and checksum of a chunk */
+    for (size_t at = SIGNATURE; at + FRAME <= size;) {
+        const uint8_t *b = bytes + at;
+        const size_t length = (size_t)b[0] << 24 | (size_t)b[1] << 16 | (size_t)b[2] << 8 | b[3];
+        if (length > size - at - FRAME) return false;
+        at += FRAME + length;
+    }
+    return true;
+}
+
+bool image_decode(struct image *image, const void *bytes, size_t size, struct error *error)
 {
     *image = (struct image){0};
-    struct decoder decoder = {0};
-    uint8_t *bytes = file_load(path, file_size_max, &decoder.size, error);
-    if (!bytes) return false;
-    decoder.bytes = bytes;
+    struct decoder decoder = {.bytes = bytes, .size = size};
+    if (!chunks_fit(bytes, size)) {
+        return error_set(error, "cannot read this as a PNG picture: a part of it is cut off");
+    }
     snprintf(decoder.reason, sizeof decoder.reason, "not enough memory");
     decoder.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, decoder.reason, remember_reason,
                                          ignore_warning);
@@ -278,10 +299,21 @@ bool image_load(struct image *image, const char *path, struct error *error)
     const bool done = decoder.info && decode_all(&decoder, image);
     png_destroy_read_struct(&decoder.png, &decoder.info, NULL);
     free(decoder.rows);
-    free(bytes);
     if (done) return true;
     image_free(image);
-    return error_set(error, "%s: cannot read this as a PNG picture: %s", path, decoder.reason);
+    return error_set(error, "cannot read this as a PNG picture: %s", decoder.reason);
+}
+
+bool image_load(struct image *image, const char *path, struct error *error)
+{
+    *image = (struct image){0};
+    size_t size;
+    uint8_t *bytes = file_load(path, file_size_max, &size, error);
+    struct error cause = {0};
+    if (!bytes) return false;
+    const bool done = image_decode(image, bytes, size, &cause);
+    free(bytes);
+    return done || error_set(error, "%s: %.600s", path, cause.text);
 }
 
 /* ---- comparing ---- */

@@ -33,7 +33,9 @@ bool image_encode(const struct image *image, int level, const struct image_note 
 bool image_save(const struct image *image, const char *path, int level,
                 const struct image_note *notes, uint32_t note_count, struct error *error);
 
-/* Reads a PNG of any kind as RGBA. */
+/* Reads a PNG of any kind as RGBA.  What the bytes claim to hold takes no memory that they cannot
+ * fill. */
+bool image_decode(struct image *image, const void *bytes, size_t size, struct error *error);
 bool image_load(struct image *image, const char *path, struct error *error);
 
 /* The largest difference of any channel, and how many pixels differ by more than `tolerance`.

@@ -21,6 +21,7 @@
 #include "base/asset.h"
 #include "draw/gl.h"
 #include "draw/ink_font.h"
+#include "draw/shortage.h"
 
 #include <assert.h>
 #include <math.h>
@@ -58,7 +59,8 @@ static struct vertex *new_shape(struct ink *ink)
     if (ink->count == ink->capacity) {
         const uint32_t capacity = ink->capacity ? ink->capacity * 2 : 1024;
         if (capacity > SHAPES_MAX) return NULL;
-        struct vertex *vertices = realloc(ink->vertices, capacity * 4 * sizeof *vertices);
+        const size_t size = capacity * 4 * sizeof *ink->vertices;
+        struct vertex *vertices = shortage_check(realloc(ink->vertices, size));
         if (!vertices) return NULL;
         ink->vertices = vertices;
         ink->capacity = capacity;
@@ -349,7 +351,7 @@ void ink_destroy(struct ink *ink)
 static bool upload_indices(struct ink *ink)
 {
     if (ink->count <= ink->index_capacity) return true;
-    uint32_t *indices = malloc(ink->capacity * 6 * sizeof *indices);
+    uint32_t *indices = shortage_check(malloc(ink->capacity * 6 * sizeof *indices));
     if (!indices) return false;
     for (uint32_t k = 0; k < ink->capacity; k++) {
         const uint32_t corners[6] = {0, 1, 2, 2, 1, 3};

@@ -8,6 +8,7 @@
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/ink_font.h"
+#include "draw/shortage.h"
 
 #include <assert.h>
 #include <math.h>
@@ -135,7 +136,8 @@ static bool atlas_room(struct ink_font *font, uint32_t width, uint32_t height, s
     if (needed > font->height) {
         uint32_t rows = font->height ? font->height : 64;
         while (rows < needed) rows *= 2;
-        uint8_t *pixels = realloc(font->pixels, (size_t)rows * INK_FONT_ATLAS_WIDTH);
+        const size_t size = (size_t)rows * INK_FONT_ATLAS_WIDTH;
+        uint8_t *pixels = shortage_check(realloc(font->pixels, size));
         if (!pixels) return false;
         memset(pixels + (size_t)font->height * INK_FONT_ATLAS_WIDTH, 0,
                (size_t)(rows - font->height) * INK_FONT_ATLAS_WIDTH);

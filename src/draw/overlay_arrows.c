@@ -11,6 +11,7 @@
 #include "draw/overlay.h"
 #include "draw/overlay_layout.h"
 #include "draw/percentile.h"
+#include "draw/shortage.h"
 #include "draw/ticks.h"
 
 #include <math.h>
@@ -56,7 +57,7 @@ static bool average_cells(struct arrows *arrows, const struct picture *picture,
     const uint32_t nx = (uint32_t)(picture->view->size[0] / size) + 4;
     const uint32_t ny = (uint32_t)(picture->view->size[1] / size) + 4;
     struct sum { double x, y, vx, vy; uint32_t count; } *sums;
-    sums = calloc((size_t)nx * ny, sizeof *sums);
+    sums = shortage_check(calloc((size_t)nx * ny, sizeof *sums));
     if (!sums) return false;
     for (uint32_t k = 0; k < arrows->count; k++) {
         const struct arrow *a = &arrows->list[k];
@@ -89,7 +90,7 @@ static bool gather(const struct picture *picture, const struct transform *t, str
     if (!grains || grains->count == 0 || !grains->vx || !grains->vy) return false;
     struct layout layout;
     overlay_layout_make(picture, &layout);
-    arrows->list = malloc(grains->count * sizeof *arrows->list);
+    arrows->list = shortage_check(malloc(grains->count * sizeof *arrows->list));
     if (!arrows->list) return false;
     arrows->count = gather_visible(picture, t, arrows->list);
     arrows->spacing = 2 * picture->scene->radius_mean * t->scale;
@@ -104,7 +105,7 @@ static bool gather(const struct picture *picture, const struct transform *t, str
 static double speed_high(const struct picture *picture, const struct arrows *arrows)
 {
     if (picture->view->color == COLOR_SPEED && picture->range[1] > 0) return picture->range[1];
-    float *speeds = malloc((arrows->count + 1) * sizeof *speeds);
+    float *speeds = shortage_check(malloc((arrows->count + 1) * sizeof *speeds));
     if (!speeds) return 0;
     uint32_t count = 0;
     for (uint32_t k = 0; k < arrows->count; k++) {

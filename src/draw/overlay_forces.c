@@ -10,6 +10,7 @@
 #include "draw/overlay.h"
 #include "draw/overlay_layout.h"
 #include "draw/percentile.h"
+#include "draw/shortage.h"
 #include "draw/ticks.h"
 
 #include <math.h>
@@ -25,7 +26,7 @@ static double contact_force(const struct contact *c) { return hypot((double)c->f
 static double force_high(const struct grains *grains)
 {
     if (!grains->contacts || grains->contact_count == 0) return 0;
-    float *values = malloc(grains->contact_count * sizeof *values);
+    float *values = shortage_check(malloc(grains->contact_count * sizeof *values));
     if (!values) return 0;
     uint32_t count = 0;
     for (uint32_t k = 0; k < grains->contact_count; k++) {
@@ -122,7 +123,7 @@ void overlay_forces(struct ink *ink, const struct picture *picture, const struct
     double key_force, key_width;
     if (!overlay_forces_key(picture, t, &key_force, &key_width)) return;
     const struct grains *grains = picture->grains;
-    struct line *lines = malloc(grains->contact_count * 2 * sizeof *lines);
+    struct line *lines = shortage_check(malloc(grains->contact_count * 2 * sizeof *lines));
     if (!lines) return;
     struct layout layout;
     overlay_layout_make(picture, &layout);

@@ -4,6 +4,7 @@
 
 #include "draw/colormap.h"
 #include "draw/overlay_label.h"
+#include "draw/shortage.h"
 #include "draw/ticks.h"
 
 #include <math.h>
@@ -174,7 +175,7 @@ static void grains_bar(const struct legend *legend, struct bar *bar)
     if (bar->scale == SCALE_LOG) bar->range[0] = fmax(bar->range[0], bar->range[1] / 1000);
     make_heading(bar->heading, sizeof bar->heading, painter_value_name(picture->view),
                  scene_unit(picture->scene, painter_value_dimension(picture->view)), bar);
-    float *values = malloc((picture->grains->count + 1) * sizeof *values);
+    float *values = shortage_check(malloc((picture->grains->count + 1) * sizeof *values));
     if (!values) return;
     painter_value_all(picture->view, picture->grains, values);
     for (uint32_t i = 0; i < picture->grains->count; i++) mark_ends(bar, (double)values[i]);

@@ -18,6 +18,7 @@
 #include "draw/gl.h"
 #include "draw/grains_gl.h"
 #include "draw/overlay.h"
+#include "draw/shortage.h"
 #include "draw/splat.h"
 
 #include <assert.h>
@@ -433,6 +434,7 @@ bool painter_frame(struct painter *painter, const struct picture *picture, struc
     assert(image->width == painter->width);
     assert(image->height == painter->height);
     struct frame frame = {0};
+    shortage_ended();
     canvas_begin(painter->canvas);
     if (!frame_prepare(&frame, painter, picture, error)) return false;
     if (!frame_grains(&frame, painter, error)) return false;
@@ -441,6 +443,10 @@ bool painter_frame(struct painter *painter, const struct picture *picture, struc
     frame_overlays(&frame, painter);
     canvas_read(painter->canvas, image);
     const GLenum trouble = gl.GetError();
+    if (shortage_ended()) {
+        return error_set(error, "not enough memory to draw all of a picture of %u x %u pixels",
+                         painter->width, painter->height);
+    }
     return trouble == GL_NO_ERROR
         || error_set(error, "a picture of %u x %u pixels was not drawn: OpenGL reports %s (%#x)",
                      painter->width, painter->height, trouble == GL_OUT_OF_MEMORY

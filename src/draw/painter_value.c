@@ -3,6 +3,7 @@
 #include "draw/painter.h"
 
 #include "draw/percentile.h"
+#include "draw/shortage.h"
 
 #include <assert.h>
 #include <math.h>
@@ -111,7 +112,7 @@ void painter_value_range(const struct view *view, const struct grains *grains,
     }
     const uint32_t step = grains->count / RANGE_SAMPLES + 1;
     const uint32_t most = grains->count / step + 1;
-    float *const samples = malloc(most * sizeof *samples);
+    float *const samples = shortage_check(malloc(most * sizeof *samples));
     if (!samples) return;
     uint32_t count = 0;
     for (uint32_t i = 0; i < grains->count; i += step) {

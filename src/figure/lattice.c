@@ -22,11 +22,11 @@ static uint32_t fallen(const struct grains *grains, double neck)
     return count;
 }
 
-enum { SAMPLES = 120 };
+enum { LOOKS = 120 };
 
 struct glass {
     double until, placed;       /* the end; grains in all */
-    double time[SAMPLES], below[SAMPLES];       /* grains below the neck */
+    double time[LOOKS], below[LOOKS];       /* grains below the neck */
     struct heap heap;           /* at the end */
 };
 
@@ -38,9 +38,9 @@ static bool empty_glass(struct lab *lab, struct glass *glass, struct strip *stri
     const double neck = 8.4;
     const struct grains *grains = &lab->footage.grains;
     uint32_t pictures = 0;
-    for (uint32_t k = 0; k < SAMPLES; k++) {
-        const bool end = k + 1 == SAMPLES;
-        glass->time[k] = glass->until * (k + 1) / SAMPLES;
+    for (uint32_t k = 0; k < LOOKS; k++) {
+        const bool end = k + 1 == LOOKS;
+        glass->time[k] = glass->until * (k + 1) / LOOKS;
         if (!lab_go(lab, glass->time[k], error)) return false;
         glass->below[k] = fallen(grains, neck);
         if (end && !heap_create(grains, -5, 5, 50, 0, INFINITY, &glass->heap, error)) return false;
@@ -54,9 +54,9 @@ static bool empty_glass(struct lab *lab, struct glass *glass, struct strip *stri
 static void judge_glass(struct figure_job *job, const struct glass *glass)
 {
     const double all = glass->placed, *n = glass->below;
-    double x[2][SAMPLES], y[2][SAMPLES];
+    double x[2][LOOKS], y[2][LOOKS];
     size_t count[2] = {0};
-    for (uint32_t k = 0; k < SAMPLES; k++) {
+    for (uint32_t k = 0; k < LOOKS; k++) {
         if (n[k] < 0.15 * all || n[k] > 0.75 * all) continue;
         const int part = n[k] < 0.45 * all ? 0 : 1;
         x[part][count[part]] = glass->time[k];
@@ -69,7 +69,7 @@ static void judge_glass(struct figure_job *job, const struct glass *glass)
      * each part of the quick form scatter by as much again. */
     figure_near(job, "rate from 45 to 75 % over that from 15 to 45 %", second / first, 1,
                 job->quick ? 0.2 : 0.1);
-    figure_hold(job, n[SAMPLES - 1] > 0.99 * all, "it empties: %.0f of %.0f below", n[SAMPLES - 1],
+    figure_hold(job, n[LOOKS - 1] > 0.99 * all, "it empties: %.0f of %.0f below", n[LOOKS - 1],
                 all);
     /* 26.8(2) degrees of a heap of 20,000 grains by another program; the rows of nodes give the
      * small heap of the quick form steps of half a grain, and grains that splash away thin out its
@@ -104,7 +104,7 @@ bool lattice_hourglass(struct figure_job *job, struct error *error)
     if (done) glass.placed = lab.setup.scene->placed.count;
     done = done && empty_glass(&lab, &glass, &strip, error);
     if (done) {
-        for (uint32_t k = 0; k < SAMPLES; k++) chart_point(&chart, glass.time[k], glass.below[k]);
+        for (uint32_t k = 0; k < LOOKS; k++) chart_point(&chart, glass.time[k], glass.below[k]);
         judge_glass(job, &glass);
         figure_picture(job, "", path);
         done = strip_save(&strip, path, error);

@@ -8,8 +8,10 @@
 #include "run/build.h"
 #include "run/resolved.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 struct header {
     char     magic[8];
@@ -74,8 +76,11 @@ bool checkpoint_save(const char *directory, uint64_t turn, const char *scene,
 {
     char path[FILE_PATH_MAX];
     turn_path(path, sizeof path, directory, turn);
-    return file_make_directory(directory, error)
-        && checkpoint_save_as(path, turn, scene, archive, error);
+    /* Not its parents: a run directory that has vanished must not come back as a torso. */
+    if (mkdir(directory, 0777) != 0 && errno != EEXIST) {
+        return error_set(error, "%s: cannot make this directory: %s", directory, strerror(errno));
+    }
+    return checkpoint_save_as(path, turn, scene, archive, error);
 }
 
 /* What is wrong with a file of `size` bytes; NULL if it is a whole checkpoint.  The versions come

@@ -20,6 +20,18 @@ static json_t *hash_word(uint64_t hash)
     return json_sprintf("%016" PRIx64, hash);
 }
 
+/* A name that is not UTF-8 (a file's may be any bytes) gets a question mark for each strange
+ * byte. */
+static json_t *words(const char *text)
+{
+    json_t *whole = json_string(text);
+    if (whole) return whole;
+    char plain[KEY_TEXT_MAX];
+    snprintf(plain, sizeof plain, "%s", text);
+    for (char *at = plain; *at; at++) if ((unsigned char)*at > 126) *at = '?';
+    return json_string(plain);
+}
+
 static json_t *number(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();
@@ -69,8 +81,8 @@ static json_t *describe(const struct manifest *manifest)
     char when[32];
     const time_t now = time(NULL);
     strftime(when, sizeof when, "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
-    json_t *root = json_pack("{s:s, s:s, s:s, s:s, s:I, s:s, s:o, s:o}",
-        "status", manifest->status, "scene", scene->name, "title", scene->title,
+    json_t *root = json_pack("{s:s, s:o, s:o, s:s, s:I, s:s, s:o, s:o}",
+        "status", manifest->status, "scene", words(scene->name), "title", words(scene->title),
         "model", manifest->model->name, "seed", (json_int_t)scene->seed,
         "written", when, "scene_hash", hash_word(manifest->scene_hash),
         "versions", build_versions());

@@ -145,7 +145,8 @@ bool mapper_write_field(struct mapper *mapper, const struct field *field, const 
         if (!(mapper->formats >> f & 1)) continue;
         if (f == MAPPER_BIT_png && field->components > 2) continue;
         folder_path(path, directory, "%s_%s.%s", field->name, suffix, format_names[f]);
-        done = write_one(mapper, field, f, path, error);
+        done = (!mapper->keeps || file_absent(path, error))
+            && write_one(mapper, field, f, path, error);
     }
     return done;
 }

@@ -33,6 +33,7 @@ struct mapper {
     int             kinds[MAP_KINDS];
     uint32_t        kind_count;
     struct painter_variable grains;     /* {n} of labels: the last that were added */
+    bool            keeps;              /* refuses to overwrite a file */
 };
 
 /* "png,npy" as a set of bits; false if a word is unknown. */

@@ -155,6 +155,12 @@ bool movie_frame(struct movie *movie, const struct image *image, struct error *e
 
 bool movie_commit(struct movie *movie, struct error *error)
 {
+    if (movie->program.hangs) {
+        error_set(error, "%s: a signal came while ffmpeg did not read; no movie was made",
+                  movie->path);
+        movie_abandon(movie);
+        return false;
+    }
     bool done = program_finish(&movie->program);
     if (!done) complain(movie, error);
     if (done) file_sync(movie->partial);
@@ -169,6 +175,7 @@ bool movie_commit(struct movie *movie, struct error *error)
 void movie_abandon(struct movie *movie)
 {
     if (!movie) return;
+    movie->program.hangs = true;        /* its work goes away: it need not tidy up */
     program_stop(&movie->program);
     unlink(movie->partial);
     movie_free(movie);

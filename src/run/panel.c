@@ -12,6 +12,9 @@
 #include <string.h>
 #include <unistd.h>
 
+/* A stepping model's last frame is up to half a step early, or its frame would be missing. */
+static const double frame_slack = 0.01;
+
 static double end_of(const struct panel_request *request)
 {
     double end = 0;
@@ -131,7 +134,7 @@ static bool shape(const struct panel_request *request, uint32_t frames, struct i
 
 bool panel_film(const struct panel_request *request, uint64_t *frames, struct error *error)
 {
-    const double count = floor(end_of(request) / request->interval + 1e-9) + 1;
+    const double count = floor(end_of(request) / request->interval + frame_slack) + 1;
     if (!(count <= 1e6)) {
         return error_set_code(error, EXIT_USAGE, "%.3g frames are too many; use --every", count);
     }

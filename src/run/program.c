@@ -8,6 +8,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -64,15 +65,23 @@ bool program_start(struct program *program, const char *const *arguments, const 
     return error_set(error, "cannot start %s: %s", arguments[0], strerror(errno));
 }
 
+/* After a signal the program has so long to read on; it needs milliseconds unless it hangs. */
+enum { PATIENCE_MS = 3000 };
+
+/* A signal while the program hangs gives it up: whoever asked for the end must not wait forever.
+ * Only a signal lets write() to a pipe return before all is written. */
 bool program_send(struct program *program, const void *bytes, size_t size)
 {
     const char *at = bytes;
-    while (size > 0) {
+    while (size > 0 && !program->hangs) {
         const ssize_t sent = write(program->pipe, at, size);
-        if (sent < 0 && errno == EINTR) continue;
-        if (sent <= 0) return false;
-        at += sent;
-        size -= (size_t)sent;
+        if (sent < 0 && errno != EINTR) return false;
+        if (sent > 0) {
+            at += sent;
+            size -= (size_t)sent;
+        }
+        struct pollfd room = {.fd = program->pipe, .events = POLLOUT};
+        if (size > 0) program->hangs = poll(&room, 1, PATIENCE_MS) == 0;
     }
     return true;
 }
@@ -100,7 +109,7 @@ bool program_poll(struct program *program, int *status)
 void program_stop(struct program *program)
 {
     if (program->process <= 0) return;
-    kill(program->process, SIGTERM);
+    kill(program->process, program->hangs ? SIGKILL : SIGTERM);
     program_finish(program);
 }
 

@@ -19,6 +19,7 @@ struct program {
     pid_t process;              /* 0: none */
     int   pipe;                 /* we write, it reads; -1: closed */
     FILE *complaints;           /* what it says goes into this unnamed file */
+    bool  hangs;                /* a signal came and it did not read: given up, drops the rest */
 };
 
 /* Is there a program of this name on the PATH? */

@@ -86,13 +86,17 @@ static void tell_type(struct parse *parse, const struct tree *node, const char *
     if (key->choices) key_limits(key, limits, sizeof limits);
     tell(parse, node, "'%s' must be %s%s%s%s, not %s%s%s", path, key_type_word(key->type),
          limits[0] ? " (" : "", limits, limits[0] ? ")" : "", tree_word(node),
-         node->kind == TREE_TEXT ? " " : "", node->kind == TREE_TEXT ? node->text : "");
+         node->text && node->kind == TREE_TEXT ? " " : "",
+         node->text && node->kind == TREE_TEXT ? node->text : "");
 }
 
 static bool is_number(const struct tree *node)
 {
     return node->kind == TREE_INTEGER || node->kind == TREE_REAL;
 }
+
+/* Squares and products of larger numbers overflow, whatever the key. */
+static const double number_max = 1e30;
 
 /* One number, within the key's limits. */
 static bool take_number(struct parse *parse, const struct tree *node, const char *path,
@@ -102,8 +106,8 @@ static bool take_number(struct parse *parse, const struct tree *node, const char
     if (node->kind == TREE_TEXT) {
         /* "nan" and "inf" are no numbers to libconfig, but an override may try them. */
         char *end;
-        number = strtod(node->text, &end);
-        if (end == node->text || *end || isfinite(number)) {
+        number = node->text ? strtod(node->text, &end) : 0;
+        if (!node->text || end == node->text || *end || isfinite(number)) {
             tell_type(parse, node, path, key);
             return false;
         }
@@ -120,6 +124,11 @@ static bool take_number(struct parse *parse, const struct tree *node, const char
     if ((!isnan(key->low) && number < key->low) || (!isnan(key->high) && number > key->high)) {
         tell(parse, node, "'%s' = %.10g is not allowed; it must be %s (%s)", path, number,
              key_limits(key, limits, sizeof limits), key->doc);
+        return false;
+    }
+    if (fabs(number) > number_max) {
+        tell(parse, node, "'%s' = %.10g is too large to compute with; at most %g (%s)", path,
+             number, number_max, key->doc);
         return false;
     }
     *value = number;

@@ -10,9 +10,9 @@
  * two diameters wide and hold four grains, an area fraction of 0.785.
  *
  * A sweep goes through the grains in their order, from a random one on and in a random sense,
- * and asks for the numbers of grains as they are by then.  Threads sweep stripes of rows, first every
- * other one, then the rest.  A stripe is so high that two of the same turn never look at the same
- * cell, so it does not matter who takes which; where stripes meet is drawn anew each step.
+ * and asks for the numbers of grains as they are by then.  Threads sweep stripes of rows, first
+ * every other one, then the rest.  A stripe is so high that two of the same turn never look at the
+ * same cell, so it does not matter who takes which; where stripes meet is drawn anew each step.
  */
 #include "model/dsmc/dsmc_heap.h"
 

@@ -201,7 +201,7 @@ scan_list(const struct ed *ed, struct scan *scan, uint32_t *list, uint32_t n, bo
         dx = _mm256_add_pd(dx, _mm256_mul_pd(du, t));
         dy = _mm256_add_pd(dy, _mm256_mul_pd(dv, t));
         if (__builtin_expect(scan->wraps, 0)) {
-            const int nearest = _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC;
+            enum { nearest = _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC };
             const __m256d up = _mm256_round_pd(
                 _mm256_mul_pd(dy, _mm256_set1_pd(ed->unwrap_y)), nearest);
             dy = _mm256_sub_pd(dy, _mm256_mul_pd(_mm256_set1_pd(ed->wrap_y), up));

@@ -1,0 +1,336 @@
+"""test_faults.py - what goes wrong in the world is told in a sentence, or does not matter.
+
+    test_faults.py PROGRAM FAULTY SHIM STRIDE
+
+Every STRIDE'th system call that needs space fails as on a full disk, every STRIDE'th allocation of
+the program fails (1: each in turn); the rest of the table in docs/faults.md once.
+
+SPDX-License-Identifier: GPL-3.0-or-later
+"""
+import glob
+import os
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import rundir
+
+PROGRAM, FAULTY, SHIM = (os.path.abspath(path) for path in sys.argv[1:4])
+STRIDE = int(sys.argv[4])
+del sys.argv[1:5]
+SKIPPED = 77
+QUIET = ["-j1", "--progress", "none"]
+SHORT = ["--until", "0.2", "-s", "phases=()", "-s", "output.checkpoint=0.1", "-s", "output.maps=0.2"]
+CRASHES = range(128, 200)       # a shell's way to tell of a signal
+
+
+class Faults(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        memory = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+        cls.folder = tempfile.mkdtemp(prefix="sandreel-faults-", dir=memory)
+        rundir.write_scenes(cls.folder)
+        done = cls.call("run", rundir.DISCS_FILE, "-o", "kept", *QUIET, *SHORT, "-s",
+                        "output.dump=true")
+        if done.returncode != 0:
+            raise AssertionError(done.stderr)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def call(cls, *words, before=(), timeout=120, cwd=None, **settings):
+        environment = {"OMP_WAIT_POLICY": "passive", **os.environ, **settings}
+        return subprocess.run([*before, PROGRAM, *words], cwd=cwd or cls.folder, env=environment,
+                              capture_output=True, text=True, errors="replace", timeout=timeout,
+                              check=False)
+
+    def path(self, *names):
+        return os.path.join(self.folder, *names)
+
+    def clean(self, *names):
+        for name in names:
+            shutil.rmtree(self.path(name), ignore_errors=True)
+            if os.path.exists(self.path(name)):
+                os.unlink(self.path(name))
+
+    def assert_told(self, done, code, *words):
+        """It ended with this code and said these words, in one sentence at the end."""
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertTrue(done.stderr.rstrip().splitlines()[-1].startswith("sandreel: "), done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+
+    def assert_nothing_half_written(self, where):
+        for name in glob.glob(self.path(where, "**", "*"), recursive=True):
+            self.assertFalse(name.endswith(".partial"), name)
+            with open(name, "rb") if os.path.isfile(name) else open(os.devnull, "rb") as file:
+                data = file.read()
+            if name.endswith(".png"):
+                self.assertEqual(data[-8:-4], b"IEND", name)
+            if name.endswith((".csv", ".json", ".cfg")) and data:
+                self.assertEqual(data[-1:], b"\n", name)
+
+    # Disks
+
+    def full_disk_at_every_call(self, name, words, goes_on):
+        call, ended = 1, 1
+        while ended != 0:
+            self.clean(name)
+            done = self.call(*words, before=[FAULTY, "count", str(call), "full"])
+            ended = done.returncode
+            if ended == SKIPPED:
+                self.skipTest("the kernel lets nobody play a full disk")
+            if ended != 0:
+                self.assert_told(done, 1)
+                self.assertRegex(done.stderr, "No space left on device|is the disk full")
+                self.assert_nothing_half_written(name)
+                self.assertEqual(glob.glob(self.path(name + "*.partial")), [])
+            if ended != 0 and goes_on and os.path.exists(self.path(name)):
+                again = self.call(*words, "--resume")
+                self.assertEqual(again.returncode, 0, f"call {call}: {again.stderr}")
+                self.assertEqual(rundir.differences(self.path("kept"), self.path(name)), [], call)
+            call += STRIDE
+        self.clean(name)
+
+    def test_a_run_whose_disk_is_full_says_so_and_goes_on_when_there_is_room(self):
+        self.full_disk_at_every_call("full", ["run", rundir.DISCS_FILE, "-o", "full", *QUIET, *SHORT,
+                                              "-s", "output.dump=true"], True)
+
+    def test_a_picture_or_map_or_table_on_a_full_disk_is_whole_or_not_there(self):
+        self.full_disk_at_every_call("x.png", ["frame", "kept", "-o", "x.png", *QUIET], False)
+        self.full_disk_at_every_call("maps", ["map", "kept", "-o", "maps", *QUIET], False)
+        self.full_disk_at_every_call("csv", ["export", "kept", "-o", "csv"], False)
+
+    def test_a_directory_that_vanishes_ends_the_run_and_does_not_come_back(self):
+        with subprocess.Popen([PROGRAM, "run", rundir.DISCS_FILE, "-o", "gone", *QUIET, "-s",
+                               "md.dt=1e-5"], cwd=self.folder, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, text=True) as child:
+            while child.poll() is None and not os.path.exists(self.path("gone", "frames")):
+                time.sleep(0.002)
+            while os.path.exists(self.path("gone")) and child.poll() is None:
+                shutil.rmtree(self.path("gone"), ignore_errors=True)
+            told = child.communicate(timeout=120)[1]
+        self.assertEqual(child.returncode, 1, told)
+        self.assertIn("No such file or directory", told)
+        self.assertFalse(os.path.exists(self.path("gone")))
+
+    def test_what_is_there_already_is_kept_unless_force_is_given(self):
+        self.call("frame", "kept", "-o", "mine.png", *QUIET)
+        for words in (["frame", "kept", "-o", "mine.png"], ["movie", "kept", "-o", "mine.gif"],
+                      ["map", "kept", "-o", "mymaps"]):
+            first = self.call(*words)
+            if words[0] == "movie" and not shutil.which("ffmpeg"):
+                continue
+            self.assertIn(first.returncode, (0, 2), first.stderr)
+            self.assert_told(self.call(*words), 2, "--force", words[-1])
+            self.assertEqual(self.call(*words, "--force").returncode, 0)
+
+    # Memory
+
+    def bytes_of(self, name):
+        """All that a command left under this name, but for wall times."""
+        if os.path.isdir(self.path(name)):
+            return rundir.everything(self.path(name))
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def every_allocation(self, name, words, quiet=tuple(QUIET)):
+        count = self.path("count")
+        settings = {"LD_PRELOAD": SHIM, "SHIM_COUNT": count}
+        self.clean("straight", name)
+        straight = self.call(*words, "-o", "straight", *quiet, **settings)
+        self.assertEqual(straight.returncode, 0, straight.stderr)
+        with open(count, encoding="ascii") as file:
+            total = int(file.read())
+        self.assertGreater(total, 20)
+        for number in range(1, total + 1, STRIDE):
+            self.clean(name)
+            done = self.call(*words, "-o", name, *quiet, SHIM_ALLOCATION=str(number), **settings)
+            where = f"allocation {number} of {total}: {done.returncode} {done.stderr}"
+            self.assertIn(done.returncode, (0, 1, 3), where)
+            if done.returncode != 0:
+                self.assertIn("memory", done.stderr, where)
+                self.assertNotIn("(null)", done.stderr, where)
+                self.assert_nothing_half_written(name)
+            else:
+                self.assertEqual(self.bytes_of("straight"), self.bytes_of(name), where)
+        self.clean("straight", name)
+
+    def test_every_allocation_of_a_run_may_fail(self):
+        for model in ("md", "ed"):
+            self.every_allocation("poor", ["run", rundir.DISCS_FILE, "--model", model, *SHORT, "-s",
+                                           "output.dump=true", "-s", "output.contacts=true"])
+        self.every_allocation("poor", ["run", "obstacle", "--quick", "--model", "dsmc", "--until",
+                                       "0.003", "--size", "160x120", "-s", "output.maps=0.001"])
+        self.every_allocation("poor", ["run", "pile", "--quick", "--model", "lga", "--size",
+                                       "160x120"])
+
+    def test_every_allocation_of_the_other_commands_may_fail(self):
+        self.every_allocation("poor.png", ["frame", "kept", "--forces", "--arrows", "--map",
+                                           "density"])
+        self.every_allocation("poor-maps", ["map", "kept", "--as", "png,npy,vti,csv"])
+        self.every_allocation("poor-tables", ["export", "kept"], [])
+
+    # Programs, libraries, fonts
+
+    def test_what_is_not_installed_is_named_with_its_package(self):
+        nowhere = {"PATH": "/nonexistent"}
+        self.assert_told(self.call("movie", "kept", "-o", "no.mp4", **nowhere), 1, "apt install ffmpeg")
+        self.assert_told(self.call("frame", "kept", "-o", "no.png", LD_PRELOAD=SHIM,
+                                   SHIM_NO_LIBRARY="lib"), 1, "libosmesa6", "libegl1")
+        self.assert_told(self.call("frame", "kept", "-o", "no.png", SANDREEL_FONT="/nowhere.ttf"), 1,
+                         "/nowhere.ttf", "SANDREEL_FONT")
+        self.assert_told(self.call("frame", "kept", "-o", "no.png", SANDREEL_GL="vulkan"), 2,
+                         "osmesa or egl")
+        self.assertEqual(glob.glob(self.path("no.*")), [])
+
+    def test_without_drawing_a_run_needs_neither_gl_nor_fonts(self):
+        done = self.call("run", rundir.DISCS_FILE, "-o", "bare", *SHORT, "-s", "output.frames=0", "-s",
+                         "output.maps=0", LD_PRELOAD=SHIM, SHIM_NO_LIBRARY="lib")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def fake_ffmpeg(self, script):
+        folder = self.path("programs")
+        os.makedirs(folder, exist_ok=True)
+        with open(os.path.join(folder, "ffmpeg"), "w", encoding="ascii") as out:
+            out.write("#!/bin/sh\n" + script)
+        os.chmod(os.path.join(folder, "ffmpeg"), 0o755)
+        return {"PATH": folder + ":" + os.environ["PATH"]}
+
+    def test_an_ffmpeg_that_ends_early_is_told_with_what_it_said(self):
+        for script in ("echo no such codec >&2; exit 1\n", "head -c 100 > /dev/null\n"):
+            done = self.call("movie", "kept", "-o", "b.mp4", **self.fake_ffmpeg(script))
+            self.assert_told(done, 1, "ffmpeg could not write")
+        self.assertIn("no such codec", self.call("movie", "kept", "-o", "b.mp4", **self.fake_ffmpeg(
+            "echo no such codec >&2; exit 1\n")).stderr)
+        self.assertEqual(glob.glob(self.path("b.mp4*")), [])
+
+    def test_a_slow_reader_only_takes_longer(self):
+        slow = "for a; do last=${a#file:}; done\nsleep 0.3\ncat > \"$last\"\nsleep 0.3\n"
+        done = self.call("movie", "kept", "-o", "s.mp4", **self.fake_ffmpeg(slow))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(os.path.getsize(self.path("s.mp4")), 3 * 4 * 160 * 120)
+
+    def test_an_ffmpeg_that_hangs_does_not_outlive_an_interruption(self):
+        path = self.fake_ffmpeg("trap '' TERM INT\nexec sleep 1000\n")["PATH"]
+        with subprocess.Popen([PROGRAM, "run", rundir.DISCS_FILE, "-o", "hung", *QUIET, *SHORT, "-s",
+                               "output.movie=a.mp4", "-s", "view.range=(0,5)", "-s", "md.dt=1e-6"],
+                              cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                              env={**os.environ, "PATH": path}, text=True) as child:
+            while child.poll() is None and not os.path.exists(self.path("hung", "scene.cfg")):
+                time.sleep(0.01)
+            time.sleep(0.2)     # by now it most likely waits for ffmpeg; if not, all the better
+            child.send_signal(signal.SIGINT)
+            told = child.communicate(timeout=120)[1]
+        self.assertEqual(child.returncode, 130, told)
+
+    # Streams
+
+    def test_standard_streams_that_are_closed_or_full_or_broken(self):
+        def shell(line):
+            return subprocess.run(["sh", "-c", line.replace("@", f"'{PROGRAM}'")], cwd=self.folder,
+                                  capture_output=True, text=True, timeout=120, check=False)
+        self.assertIn("standard output", shell("@ help keys > /dev/full").stderr)
+        self.assertEqual(shell("@ help keys > /dev/full").returncode, 1)
+        self.assertEqual(shell("(@ help keys; echo $? > code) | true; cat code").stdout.strip() in
+                         ("0", "1"), True)
+        for streams in ("< /dev/null >&- 2>&-", ">&-", "2>&-", "2> /dev/full"):
+            self.clean("closed")
+            shell(f"@ run {rundir.DISCS_FILE} -o closed -j1 {' '.join(repr(w) for w in SHORT)} "
+                  f"-s output.dump=true {streams}")
+            self.assertEqual(rundir.differences(self.path("kept"), self.path("closed")), [], streams)
+
+    # Places, words, clocks
+
+    def test_a_path_may_hold_any_letters(self):
+        for name in ("ein Weg – mit ü", "a'b\"c", "100%s:x", "-dash", "new\nline", "comma,[0]=1;"):
+            folder = self.path(name)
+            os.makedirs(folder)
+            shutil.copy(self.path(rundir.DISCS_FILE), os.path.join(folder, "d.cfg"))
+            run = os.path.join(folder, "a run")
+            done = self.call("run", os.path.join(folder, "d.cfg"), "-o", run, *QUIET, *SHORT)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            again = self.call("run", run, "--resume", *QUIET)
+            self.assertEqual(again.returncode, 0, again.stderr)
+            words = [["frame", run, "-o", os.path.join(folder, "x.png")]]
+            if shutil.which("ffmpeg"):
+                words.append(["movie", run, "-o", os.path.join(folder, "x.gif")])
+            for call in words:
+                done = self.call(*call, *QUIET)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertTrue(os.path.exists(call[-1]))
+
+    def test_a_name_that_is_not_utf8_does_not_stop_a_run(self):
+        name = os.path.join(os.fsencode(self.folder), b"d\xfcne.cfg")
+        shutil.copy(self.path(rundir.DISCS_FILE), name)
+        done = subprocess.run([PROGRAM, "run", name, "-o", "latin", *QUIET, *SHORT], cwd=self.folder,
+                              capture_output=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_a_locale_with_a_comma_changes_no_byte(self):
+        if not shutil.which("localedef"):
+            self.skipTest("no localedef")
+        made = subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", self.path("de_DE.UTF-8")],
+                              capture_output=True, check=False)
+        if not os.path.exists(self.path("de_DE.UTF-8")):
+            self.skipTest("cannot make a locale: " + made.stderr.decode())
+        done = self.call("run", rundir.DISCS_FILE, "-o", "comma", *QUIET, *SHORT, "-s",
+                         "output.dump=true", LOCPATH=self.folder, LC_ALL="de_DE.UTF-8",
+                         LANG="de_DE.UTF-8", LC_NUMERIC="de_DE.UTF-8")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(rundir.differences(self.path("kept"), self.path("comma")), [])
+
+    def test_a_date_that_jumps_changes_nothing(self):
+        done = self.call("run", rundir.DISCS_FILE, "-o", "jumps", *QUIET, *SHORT, "-s",
+                         "output.dump=true", "--time-limit", "3600", LD_PRELOAD=SHIM, SHIM_CLOCK="1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(rundir.differences(self.path("kept"), self.path("jumps")), [])
+
+    # Checkpoints that do not fit
+
+    def forge(self, change):
+        """A copy of the kept run whose checkpoints were changed and hashed anew."""
+        self.clean("forged")
+        shutil.copytree(self.path("kept"), self.path("forged"))
+        for name in glob.glob(self.path("forged", "checkpoint", "*.checkpoint")):
+            with open(name, "rb") as file:
+                data = bytearray(file.read())
+            change(data)
+            at = rundir.CHECKPOINT_HEADER.size - 8
+            data[at - 8:at] = struct.pack("<Q", rundir.fnv(data[at + 8:]))
+            data[at:at + 8] = struct.pack("<Q", rundir.fnv(data[:at]))
+            with open(name, "wb") as file:
+                file.write(data)
+        return self.call("run", "forged", "--resume", *QUIET)
+
+    def test_a_checkpoint_of_another_version_or_scene_is_refused_with_what_differs(self):
+        self.assertEqual(self.forge(lambda data: None).returncode, 0)
+
+        def older(data):
+            data[16:40] = b"0.0.9".ljust(24, b"\0")
+        self.assert_told(self.forge(older), 2, "0.0.9", "this is ")
+
+        def layout(data):
+            data[8:12] = struct.pack("<I", 1)
+        self.assert_told(self.forge(layout), 1, "another version")
+
+        def scene(data):
+            at = data.index(b"seed = 1;")
+            data[at:at + 9] = b"seed = 7;"
+        self.assert_told(self.forge(scene), 2, "seed: 7 there, 1 here")
+        done = self.call("run", rundir.DISCS_FILE, "-o", "kept", "--resume", *QUIET, *SHORT, "-s",
+                         "output.dump=true", "-s", "grains.radius=0.39", "--seed", "3")
+        self.assert_told(done, 2, "seed: 1 there, 3 here", "grains.[0].radius: (0.4, 0.4) there, "
+                         "(0.39, 0.39) here")
+
+
+if __name__ == "__main__":
+    program = unittest.main(exit=False, verbosity=1)
+    sys.exit(0 if program.result.wasSuccessful() else 1)

@@ -1,0 +1,85 @@
+"""test_frames.py - frames as references: the same bytes from run to run and from both renderers, and
+`frame --against`, which tells when they are not.
+
+SPDX-License-Identifier: GPL-3.0-or-later
+"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rundir
+
+PROGRAM = os.path.abspath(sys.argv.pop(1))
+LOOK = ["-t", "0.1", "--size", "160x120", "--forces", "--arrows", "--map", "density", "--theme",
+        "dark", "--force", "--progress", "none"]
+
+
+class Frames(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="sandreel-frames-")
+        rundir.write_scenes(cls.folder)
+        done = cls.frame("reference.png")
+        if done.returncode != 0:
+            raise AssertionError(done.stderr)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def frame(cls, name, *options, **settings):
+        return subprocess.run([PROGRAM, "frame", rundir.DISCS_FILE, "-o", name, *LOOK, *options],
+                              cwd=cls.folder, capture_output=True, text=True, timeout=120,
+                              env={**os.environ, **settings}, check=False)
+
+    def bytes_of(self, name):
+        with open(os.path.join(self.folder, name), "rb") as file:
+            return file.read()
+
+    def test_a_frame_is_the_same_from_run_to_run_and_on_any_number_of_threads(self):
+        for threads in ("1", "2"):
+            self.frame("again.png", "-j", threads)
+            self.assertEqual(self.bytes_of("again.png"), self.bytes_of("reference.png"))
+
+    def test_both_renderers_draw_the_same_bytes(self):
+        for renderer in ("osmesa", "egl"):
+            done = self.frame(renderer + ".png", SANDREEL_GL=renderer)
+            if "not installed" in done.stderr or "cannot draw" in done.stderr:
+                self.skipTest(done.stderr)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(self.bytes_of(renderer + ".png"), self.bytes_of("reference.png"))
+
+    def test_the_same_picture_passes_and_another_ends_with_4_and_a_picture_of_the_difference(self):
+        done = self.frame("now.png", "--against", "reference.png")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertFalse(os.path.exists(os.path.join(self.folder, "now-difference.png")))
+        done = self.frame("now.png", "--against", "reference.png", "--tolerance", "3",
+                          "--colormap", "inferno")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("of 19200 pixels differ", done.stderr)
+        self.assertIn("now-difference.png", done.stderr)
+        self.assertEqual(self.bytes_of("now-difference.png")[:4], b"\x89PNG")
+        # No two pixels are further apart than 255, so this tolerance lets everything pass.
+        done = self.frame("now.png", "--against", "reference.png", "--tolerance", "255",
+                          "--colormap", "inferno")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_what_cannot_be_compared_is_told(self):
+        for words, code, told in ((["--against", "absent.png"], 1, "absent.png"),
+                                  (["--against", rundir.DISCS_FILE], 1, "PNG"),
+                                  (["--tolerance", "3"], 2, "--against"),
+                                  (["--against", "reference.png", "--tolerance", "256"], 2, "255"),
+                                  (["--against", "now2.png"], 2, "overwrite"),
+                                  (["--against", "reference.png", "--size", "80x60"], 4, "160x120")):
+            done = self.frame("now2.png", *words)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(told, done.stderr)
+
+
+if __name__ == "__main__":
+    program = unittest.main(exit=False, verbosity=1)
+    sys.exit(0 if program.result.wasSuccessful() else 1)

@@ -1,0 +1,160 @@
+/* test_keys.c - every numeric key of every group at 0, -1, the smallest and the largest number,
+ * nan and inf: refused with a finding, or a run that begins and stays finite or says why not.
+ *
+ * Walks the key tables, so a key that is added tomorrow is tried too.  Grains of md, ed, dsmc and
+ * lga are advanced by a few hundred units of work after each accepted value.
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ */
+#include "check.h"
+#include "model/simulation.h"
+#include "run/setup.h"
+#include "scene/scene_key.h"
+
+#include <sys/resource.h>
+
+static const char *const values[] = {"0", "-1", "1e308", "-1e308", "5e-324", "nan", "inf", "-inf"};
+
+enum { VALUES = sizeof values / sizeof *values, BUDGET = 300 };
+
+/* One entry in each list that the model can do. */
+static const char basic[] =
+    "seed = 3; until = 1.0; box = (0.0, 0.0, 20.0, 20.0); gravity = (0.0, -1.0);\n"
+    "grains = ( { radius = 0.5; restitution = 0.9; } );\n"
+    "placements = ( { count = 9; spacing = 1.5; temperature = 1.0; } );\n"
+    "phases = ( { time = 0.5; set = (\"grains.restitution=0.8\"); } );\n";
+static const char rich[] =
+    "sources = ( { position = (10.0, 18.0); rate = 1.0; velocity = (0.0, -1.0); } );\n"
+    "walls = ( { shape = \"segment\"; from = (1.0, 15.0); to = (5.0, 15.0); } );\n"
+    "obstacles = ( { shape = \"disc\"; center = (15.0, 10.0); radius = 1.0; } );\n"
+    "screens = ( { radius = 100.0; } );\n"
+    "sinks = ( { region = (0.0, 19.0, 20.0, 20.0); } );\n";
+
+static char text[2000];
+static unsigned tried, refused, ran;
+
+static bool is_numeric(enum key_type type)
+{
+    return type == KEY_REAL || type == KEY_COUNT || type == KEY_WORD64 || type == KEY_VECTOR
+        || type == KEY_BOX || type == KEY_RANGE || type == KEY_REALS || type == KEY_POINTS;
+}
+
+static void write_value(char *out, size_t size, enum key_type type, const char *value)
+{
+    const char *v = value;
+    if (type == KEY_VECTOR) snprintf(out, size, "(%s, %s)", v, v);
+    else if (type == KEY_BOX) snprintf(out, size, "(%s, %s, %s, %s)", v, v, v, v);
+    else if (type == KEY_REALS) snprintf(out, size, "(%s)", v);
+    else if (type == KEY_POINTS) snprintf(out, size, "((%s, %s), (1, 2), (3, 1))", v, v);
+    else snprintf(out, size, "%s", v);
+}
+
+static bool counters_are_finite(const struct simulation *sim)
+{
+    const struct counters now = simulation_count(sim);
+    return isfinite(now.time) && isfinite(now.kinetic_energy) && isfinite(now.rotational_energy)
+        && isfinite(now.potential_energy) && isfinite(now.momentum_x) && isfinite(now.momentum_y);
+}
+
+/* Begins the run; it may be refused or break, but never silently leave the finite numbers. */
+static void run_briefly(const struct setup *setup, const char *override)
+{
+    struct simulation sim = {0};
+    struct error error = {.text = ""};
+    if (!simulation_create(&sim, setup->model, setup->scene, &error)) {
+        if (!error.text[0]) fail_msg("%s: refused without a reason", override);
+        simulation_destroy(&sim);
+        return;
+    }
+    const double t = fmin(setup->scene->until, 1);
+    const enum advance outcome = simulation_advance(&sim, t, BUDGET, &error);
+    if (outcome == ADVANCE_BROKEN) {
+        if (!error.text[0]) fail_msg("%s: broke without a reason", override);
+    } else if (!counters_are_finite(&sim)) {
+        fail_msg("%s with %s: counters are not finite", override, setup->model->name);
+    }
+    ran++;
+    simulation_destroy(&sim);
+}
+
+static void try_value(const char *model, const char *path, const struct key *key,
+                      const char *value)
+{
+    char override[400], words[200], model_words[60];
+    write_value(words, sizeof words, key->type, value);
+    snprintf(override, sizeof override, "%s=%s", path, words);
+    snprintf(model_words, sizeof model_words, "model=\"%s\"", model);
+    const char *const overrides[] = {model_words, override};
+    const struct setup_request request = {.path = "keys.cfg", .text = text, .overrides = overrides,
+                                          .override_count = 2, .place = true};
+    struct setup setup;
+    struct error error = {.text = ""};
+    tried++;
+    if (setup_load(&setup, &request, &error)) {
+        run_briefly(&setup, override);
+    } else {
+        refused++;
+        if (setup.findings && setup.findings->errors == 0) fail_msg("%s: no finding", override);
+    }
+    setup_free(&setup);
+}
+
+static void try_group(const char *model, const struct key_group *group, bool list)
+{
+    for (uint32_t k = 0; k < group->count; k++) {
+        const struct key *key = &group->keys[k];
+        char path[200];
+        if (!is_numeric(key->type)) continue;
+        if (group->name[0]) snprintf(path, sizeof path, "%s.%s%s", group->name, list ? "[0]." : "",
+                                     key->name);
+        else snprintf(path, sizeof path, "%s", key->name);
+        for (int v = 0; v < VALUES; v++) try_value(model, path, key, values[v]);
+    }
+}
+
+/* The rich scene, if the model can do it. */
+static void choose_text(const char *model)
+{
+    char words[60];
+    struct setup setup;
+    struct error error;
+    snprintf(words, sizeof words, "model=\"%s\"", model);
+    const char *const overrides[] = {words};
+    const struct setup_request request = {.path = "keys.cfg", .text = text, .overrides = overrides,
+                                          .override_count = 1};
+    snprintf(text, sizeof text, "%s%s", basic, rich);
+    const bool fits = setup_load(&setup, &request, &error);
+    setup_free(&setup);
+    if (!fits) snprintf(text, sizeof text, "%s", basic);
+}
+
+static void test_every_number_of_a_scene_is_refused_or_runs(void **unused)
+{
+    (void)unused;
+    for (const struct model *const *m = model_list; *m; m++) {
+        choose_text((*m)->name);
+        try_group((*m)->name, &scene_key_top, false);
+        for (uint32_t s = 0; s < SCENE_SECTIONS; s++) {
+            const struct scene_section *section = &scene_key_sections[s];
+            const bool there = strstr(text, section->group->name) != NULL;
+            if (!section->list || there) try_group((*m)->name, section->group, section->list);
+        }
+        if ((*m)->settings) try_group((*m)->name, (*m)->settings, false);
+    }
+    print_message("%u values tried, %u refused, %u ran\n", tried, refused, ran);
+    CHECK(refused > 0 && ran > 0);
+}
+
+int main(void)
+{
+    /* What asks for a billion grains is to be told that there is no memory for them. */
+    const struct rlimit limit = {(rlim_t)2 << 30, (rlim_t)2 << 30};
+#ifndef __SANITIZE_ADDRESS__
+    setrlimit(RLIMIT_AS, &limit);
+#else
+    (void)limit;
+#endif
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_number_of_a_scene_is_refused_or_runs),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
