@@ -67,8 +67,8 @@ def test_a_saved_picture_is_the_one_that_frame_makes():
     for model, scene in MODELS.items():
         live("a", "go until 0.5\nframe p\ncolor spin\nmap density\nzoom 2 2 12 12\nframe q\n",
              scene)
-        sandreel("frame", "scene.cfg", "-t", "0.5", "-o", "p.png", "--progress", "none")
-        sandreel("frame", "scene.cfg", "-t", "0.5", "-o", "q.png", "--progress", "none",
+        sandreel("frame", "scene.cfg", "-t", "0.5", "-o", "p.png", "--progress", "none", "--force")
+        sandreel("frame", "scene.cfg", "-t", "0.5", "-o", "q.png", "--progress", "none", "--force",
                  "--color", "spin", "--map", "density", "--zoom", "2,2,12,12")
         assert read("p.png") == read("a/p.png"), model
         assert read("q.png") == read("a/q.png"), model
