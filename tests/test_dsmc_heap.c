@@ -226,8 +226,9 @@ static void test_a_heap_of_thirty_thousand_has_the_tail_of_equation_8(void **unu
     print_message("m %.3f(%.3f), l/r %.1f(%.1f), h_m %.1f, rms %.1f, of a line %.1f\n", tail.slope,
                   tail.slope_error, tail.tail, tail.tail_error, tail.height, tail.rms,
                   tail.rms_line);
-    /* An independent program: m = 0.54, l/r = 15 d, rms 4.8 d.  The slope of a heap of 3000 is given
-     * to 6 %; the tail is a fourteenth of the foot, 270 d, so 2 % of that make a third of it. */
+    /* An independent program: m = 0.54, l/r = 15 d, rms 4.8 d.  The slope of a heap of 3000 is
+     * given to 6 %; the tail is a fourteenth of the foot, 270 d, so 2 % of that make a third of
+     * it. */
     CHECK_NEAR(tail.slope, 0.54, 0.06 * 0.54);
     CHECK_NEAR(tail.tail, 15, 5);
     CHECK(tail.rms < 0.5 * tail.rms_line);                      /* it is a tail, no line */

@@ -24,10 +24,11 @@ static const uint8_t replay_options[] = {OPTION_output, OPTION_force, OPTION_thr
     OPTION_COUNT};
 static const uint8_t map_options[] = {OPTION_output, OPTION_force, OPTION_field, OPTION_time,
     OPTION_average, OPTION_as, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_size, OPTION_zoom,
-    OPTION_theme,
-    OPTION_colormap, OPTION_scale, OPTION_map_range, OPTION_title, SIMULATING, ALWAYS};
-static const uint8_t export_options[] = {OPTION_to, OPTION_output, OPTION_frame, OPTION_time,
-    OPTION_field, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_set, OPTION_help, OPTION_COUNT};
+    OPTION_theme, OPTION_colormap, OPTION_scale, OPTION_map_range, OPTION_title, SIMULATING,
+    ALWAYS};
+static const uint8_t export_options[] = {OPTION_to, OPTION_output, OPTION_force, OPTION_frame,
+    OPTION_time, OPTION_field, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_set, OPTION_help,
+    OPTION_COUNT};
 static const uint8_t figure_options[] = {OPTION_small, OPTION_output, OPTION_plot_as, OPTION_json,
     ALWAYS};
 static const uint8_t plot_options[] = {OPTION_of, OPTION_output, OPTION_plot_as, OPTION_time,
@@ -55,10 +56,10 @@ const struct command cli_commands[] = {
      "`sandreel run DIRECTORY --resume` goes on with an earlier run.\n",
      run_options, 1, 1, cli_run},
     {"frame", "SCENE|RUN", "draws one picture, from a run's dumps or simulated on the fly",
-     "Without -t the end is drawn.  The file is NAME.png unless -o says another; one that is there\n"
-     "already is overwritten only with --force.  --against REF.png compares: exit code 4, and\n"
-     "NAME-difference.png with the differing pixels in red, if any channel of any pixel differs\n"
-     "by more than --tolerance.\n",
+     "Without -t the end is drawn.  The file is NAME.png unless -o says another; one that is\n"
+     "there already is overwritten only with --force.  --against REF.png compares: exit code 4,\n"
+     "and NAME-difference.png with the differing pixels in red, if any channel of any pixel\n"
+     "differs by more than --tolerance.\n",
      frame_options, 1, 1, cli_frame},
     {"movie", "SCENE|RUN...", "films a run, or a scene while it is simulated",
      "-o NAME.mp4, .webm or .gif; ffmpeg must be installed.  --side-by-side puts several models\n"

@@ -39,7 +39,6 @@ static bool export_frames(const struct options *options, const struct dumps *dum
     uint32_t first, last;
     if (!choose_frames(options, dumps, &first, &last, error)) return false;
     struct grains grains = {0};
-    const bool force = options_given(options, OPTION_force);
     bool done = true;
     for (uint32_t k = first; done && k <= last; k++) {
         const struct dump_entry *entry = &dumps->index.entries[k];
@@ -67,7 +66,8 @@ int cli_export(const struct options *options)
             "%s: not a run directory; `sandreel run` makes one", path));
     done = done && opening_load(&setup, options, path, NULL, false, &error)
         && dumps_open(&dumps, path, &error)
-        && exporter_open(&exporter, setup.scene, directory, formats, &error)
+        && exporter_open(&exporter, setup.scene, directory, formats,
+                         options_given(options, OPTION_force), &error)
         && export_frames(options, &dumps, &exporter, &error);
     if (done) printf("%s\n", directory);
     exporter_close(&exporter);

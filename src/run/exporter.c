@@ -54,15 +54,16 @@ static char *trajectory_path(const struct exporter *exporter, char path[FILE_PAT
 }
 
 bool exporter_open(struct exporter *exporter, const struct scene *scene, const char *directory,
-                   unsigned formats, struct error *error)
+                   unsigned formats, bool force, struct error *error)
 {
     char path[FILE_PATH_MAX];
-    *exporter = (struct exporter){.scene = scene, .formats = formats};
+    *exporter = (struct exporter){.scene = scene, .formats = formats, .keeps = !force};
     snprintf(exporter->directory, sizeof exporter->directory, "%s", directory);
     if (!file_make_directory(directory, error)) return false;
     for (int f = 0; f < EXPORTER_FORMAT_COUNT; f++) {
         if (!wants(exporter, f) || !formats_table[f].file) continue;
         folder_path(path, directory, "%s", formats_table[f].file);
+        if (exporter->keeps && !file_absent(path, error)) return false;
         if (!file_begin(&exporter->texts[f], path, error)) return false;
     }
     if (wants(exporter, EXPORTER_vti)
@@ -70,9 +71,19 @@ bool exporter_open(struct exporter *exporter, const struct scene *scene, const c
                         1u << MAPPER_BIT_vti, error)) {
         return false;
     }
+    exporter->mapper.keeps = exporter->keeps;
     if (!wants(exporter, EXPORTER_h5md)) return true;
+    if (exporter->keeps && !file_absent(trajectory_path(exporter, path, ""), error)) return false;
     exporter->h5md = h5md_create(trajectory_path(exporter, path, ".partial"), scene, error);
     return exporter->h5md != NULL;
+}
+
+/* The path of a frame's own file; false if it is there already and is to be kept. */
+static bool frame_path(const struct exporter *exporter, char path[FILE_PATH_MAX], uint32_t frame,
+                       const char *ending, struct error *error)
+{
+    folder_path(path, exporter->directory, "grains_%06u.%s", frame, ending);
+    return !exporter->keeps || file_absent(path, error);
 }
 
 /* The formats that make files of their own for each frame. */
@@ -80,24 +91,24 @@ static bool write_files(struct exporter *exporter, const struct grains *grains, 
                         struct error *error)
 {
     const struct scene *scene = exporter->scene;
-    const char *directory = exporter->directory;
     char path[FILE_PATH_MAX], suffix[16];
     bool done = true;
     if (wants(exporter, EXPORTER_csv)) {
-        done = csv_save_grains(folder_path(path, directory, "grains_%06u.csv", frame), grains,
-                               scene, error);
+        done = frame_path(exporter, path, frame, "csv", error)
+            && csv_save_grains(path, grains, scene, error);
     }
     if (done && wants(exporter, EXPORTER_npy)) {
-        done = dump_save(folder_path(path, directory, "grains_%06u.npy", frame), grains, error);
+        done = frame_path(exporter, path, frame, "npy", error) && dump_save(path, grains, error);
     }
     if (done && wants(exporter, EXPORTER_vtp)) {
-        done = vtp_save(folder_path(path, directory, "grains_%06u.vtp", frame), grains, error);
+        done = frame_path(exporter, path, frame, "vtp", error)
+            && vtp_save(path, grains, error);
     }
     if (done && wants(exporter, EXPORTER_vti)) {
         snprintf(suffix, sizeof suffix, "%06u", frame);
         mapper_clear(&exporter->mapper);
         mapper_add(&exporter->mapper, grains);
-        done = mapper_write(&exporter->mapper, directory, suffix, error);
+        done = mapper_write(&exporter->mapper, exporter->directory, suffix, error);
     }
     return done;
 }

@@ -35,6 +35,7 @@ struct exporter {
     const struct scene *scene;
     char     directory[FILE_PATH_MAX];
     unsigned formats;           /* 1 << EXPORTER_... */
+    bool     keeps;             /* refuses to overwrite */
     struct file texts[EXPORTER_FORMAT_COUNT];   /* of the formats that hold all frames as text */
     struct mapper mapper;
     struct h5md *h5md;
@@ -43,8 +44,9 @@ struct exporter {
 /* "csv,h5md" as a set of bits; false if a word is unknown. */
 bool exporter_parse(const char *words, unsigned *formats, struct error *error);
 
+/* Files that are there already are refused unless `force`. */
 bool exporter_open(struct exporter *exporter, const struct scene *scene, const char *directory,
-                   unsigned formats, struct error *error);
+                   unsigned formats, bool force, struct error *error);
 bool exporter_add(struct exporter *exporter, const struct grains *grains, uint32_t frame,
                   uint64_t steps, struct error *error);
 

@@ -22,8 +22,11 @@ static bool take_sample(const struct simulation *sim, struct grains *grains, str
         const double width = box[2] - box[0], height = box[3] - box[1];
         const double cell = fmax(width, height) / SAMPLE_SIDE;
         grains_free(grains);
-        if (!field_create(sample, box[0], box[1], cell, (uint32_t)ceil(width / cell - 1e-9),
-                          (uint32_t)ceil(height / cell - 1e-9), SAMPLE_COMPONENTS, error)) return false;
+        const uint32_t nx = (uint32_t)ceil(width / cell - 1e-9);
+        const uint32_t ny = (uint32_t)ceil(height / cell - 1e-9);
+        if (!field_create(sample, box[0], box[1], cell, nx, ny, SAMPLE_COMPONENTS, error)) {
+            return false;
+        }
     }
     memset(sample->values, 0, sizeof *sample->values * SAMPLE_COMPONENTS * sample->nx * sample->ny);
     grains->time = sample->time = simulation_count(sim).time;
