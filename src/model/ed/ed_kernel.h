@@ -13,7 +13,11 @@
 
 #include <math.h>
 
+#ifdef __SANITIZE_ADDRESS__     /* eight loops with every check in them cost the compiler minutes */
+#define FORCE_INLINE static inline
+#else
 #define FORCE_INLINE static inline __attribute__((always_inline))
+#endif
 
 /* What a kernel is compiled for. */
 enum {

@@ -11,7 +11,11 @@
 #define JOIN(a, b) JOIN_(a, b)
 #define N(name) JOIN(name, KERNEL)
 #define PARTS (LGA_LANES / KERNEL_WIDTH)        /* vectors a block */
+#ifdef __SANITIZE_ADDRESS__     /* with every check in them they take minutes to compile */
+#define INLINE KERNEL_TARGET static inline
+#else
 #define INLINE KERNEL_TARGET static inline __attribute__((always_inline))
+#endif
 
 typedef uint64_t N(vec) __attribute__((vector_size(8 * KERNEL_WIDTH), may_alias));
 typedef uint64_t N(loose) __attribute__((vector_size(8 * KERNEL_WIDTH), may_alias, aligned(8)));
