@@ -265,9 +265,9 @@ static void test_friction_that_is_drawn_once_for_each_contact_steepens_what_stay
     (void)unused;
     /* Drawn anew in every tick (s = 0.4), friction only slows the creep to the slope of the
      * lattice, 30 degrees as without it.  Drawn once, it holds for ever: more contacts that do,
-     * a steeper slope, yet not the upright walls of s = 1.  No independent number is known; six seeds
-     * of this program give 40.1 at s = 0.2 and 50.4 at 0.4, and one of them scatters by 1.6 and
-     * 2.2.  Half of each step of ten degrees is asked for, two of the scatter. */
+     * a steeper slope, yet not the upright walls of s = 1.  No independent number is known; six
+     * seeds of this program give 40.1 at s = 0.2 and 50.4 at 0.4, and one of them scatters by 1.6
+     * and 2.2.  Half of each step of ten degrees is asked for, two of the scatter. */
     const double creeps = slope_left(0.4, false);
     const double steep = slope_left(0.2, true), steeper = slope_left(0.4, true);
     CHECK_NEAR(creeps, 30, 1);
