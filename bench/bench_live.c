@@ -15,9 +15,9 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { TURNS = 8, KEYS = 15 };
+enum { TURNS = 5, KEYS = 15 };      /* the caller repeats it all, too */
 
-static const double turn_seconds = 0.6, pictures_seconds = 3, slow_rate = 10;
+static const double turn_seconds = 0.5, pictures_seconds = 3, slow_rate = 10;
 
 static const char scene_text[] =
     "until = 1000.0; box = [0.0, 0.0, 250.0, 140.0]; gravity = (0.0, -1.0); model = \"md\";"

@@ -6,7 +6,7 @@
 #
 # Meson calls the object of src/room/file.c `src_room_file.c.o`.  Objects of files that are gone
 # are passed over.  `check_prefix.sh --self-test COMPILER` plants a violation and fails unless it is
-# found.
+# found; COMPILER may be several words, as where ccache stands before it.
 check() {
     find "$2" -name '*.c' | sort | while read -r source; do
         path=${source#"$2"/}
@@ -26,12 +26,12 @@ check() {
 }
 
 compile() {
-    "$compiler" -c -o "$box/build/lib.a.p/src_room_$1.c.o" "$box/src/room/$1.c" || exit 1
+    $compiler -c -o "$box/build/lib.a.p/src_room_$1.c.o" "$box/src/room/$1.c" || exit 1
 }
 
 if [ "$1" = --self-test ]; then
     shift
-    compiler=$1
+    compiler=$*
     box=$(mktemp -d)
     trap 'rm -rf "$box"' EXIT
     mkdir -p "$box/build/lib.a.p" "$box/src/room"

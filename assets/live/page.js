@@ -51,7 +51,7 @@ async function draw(answer) {
   const start = performance.now();
   const buffer = await answer.arrayBuffer();
   if (view.width !== width || view.height !== height) { view.width = width; view.height = height; }
-  if (line.as === "raw") {
+  if (answer.headers.get("Content-Type") !== "image/png") {
     ink.putImageData(new ImageData(new Uint8ClampedArray(buffer), width, height), 0, 0);
     line.slow = performance.now() - start > 80 ? line.slow + 1 : 0;
     if (line.slow > 5) line.as = "png";
@@ -63,23 +63,31 @@ async function draw(answer) {
   meter.frames++;
 }
 
+function ask() { return fetch(`frame?after=${shown}&as=${line.as}&rate=60`); }
+
+// The next picture is asked for before this one is shown, so that both machines work at once.
 async function watch() {
+  let coming = ask();
   for (;;) {
     try {
-      const answer = await fetch(`frame?after=${shown}&as=${line.as}&rate=60`);
+      const answer = await coming;
       if (!answer.ok) throw new Error(await answer.text());
       const text = answer.headers.get("X-Status");
       if (answer.status === 200) {
-        await draw(answer);
         shown = Number(answer.headers.get("X-Frame"));
+        coming = ask();
+        coming.catch(() => {});         // told when it is awaited
+        await draw(answer);
       } else {
         const news = await (await fetch("news")).json();
         if (!news.ok) tell(news.text, true);
+        coming = ask();
       }
       if (text) take(JSON.parse(text));
     } catch (trouble) {
       $("facts").textContent = "the session is over";
       await new Promise(done => setTimeout(done, 1000));
+      coming = ask();
     }
     if (document.hidden) await new Promise(done =>
       document.addEventListener("visibilitychange", done, { once: true }));

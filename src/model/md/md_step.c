@@ -137,15 +137,16 @@ static void push_cross(struct md *md, uint32_t t, struct md_window *w)
 {
     const struct strip *strip = &md->strips[t];
     const uint32_t base = md->link_count - md->cross_count;
-    memset(&md->sums[t], 0, sizeof md->sums[t]);
+    struct strip_sums sums = {0};
     for (uint32_t k = strip->cross_first; k < strip->cross_last; k += WINDOW) {
         const uint32_t left = strip->cross_last - k, last = k + (left < WINDOW ? left : WINDOW);
         for (uint32_t c = k; c < last; c++) md->cross_push[c - base] = (struct push){0};
-        md_pairs_window(md, k, last, w, &md->sums[t]);
+        md_pairs_window(md, k, last, w, &sums);
         for (uint32_t c = 0; c < w->count; c++) {
             md->cross_push[w->link[c] - base] = (struct push){w->fx[c], w->fy[c], w->ft[c], 0};
         }
     }
+    md->sums[t] = sums;
 }
 
 static void add_cross(struct md *md, uint32_t t, struct push *pushes)
@@ -188,15 +189,16 @@ static void sweep(struct md *md, uint32_t t, struct push *pushes, struct md_wind
 {
     const struct strip *strip = &md->strips[t];
     const unsigned form = (md->law.tangential ? ROTATES : 0) | (md->gears ? GEAR : 0);
-    struct strip_sums *sums = &md->sums[t];
     if (md->wall_link_count > 0) md_walls_push(md, t, pushes);
+    /* Added up here and not in place: neighbouring strips share a line of the cache. */
+    struct strip_sums sums = md->sums[t];
     if (md->cross_count > 0) add_cross(md, t, pushes);
     uint32_t done = strip->first;
     int64_t fastest = 0;
     struct push *const from_zero = pushes - strip->first;
     for (uint32_t k = strip->link_first; k < strip->link_last;) {
         const uint32_t left = strip->link_last - k, last = k + (left < WINDOW ? left : WINDOW);
-        md_pairs_window(md, k, last, w, sums);
+        md_pairs_window(md, k, last, w, &sums);
         if (form & ROTATES) scatter(w, from_zero, true);
         else scatter(w, from_zero, false);
         k = last;
@@ -205,7 +207,8 @@ static void sweep(struct md *md, uint32_t t, struct push *pushes, struct md_wind
         done = next;
     }
     fastest = move_grains(form, md, from_zero + done, done, strip->last, fastest);
-    memcpy(&sums->speed2_max, &fastest, sizeof fastest);
+    memcpy(&sums.speed2_max, &fastest, sizeof fastest);
+    md->sums[t] = sums;
 }
 
 static void add_sums(struct md *md)
