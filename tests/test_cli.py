@@ -152,6 +152,33 @@ class Sandreel(unittest.TestCase):
         self.assertIn("13 frames, 25 log rows", plan)
         self.assertFalse(os.path.exists(self.path("never")))
 
+    def test_check_draws_the_walls_as_the_lattice_has_them(self):
+        scene = self.path("lattice.cfg")
+        with open(scene, "w", encoding="utf-8") as out:
+            out.write("""model = "lga"; until = 1.0; box = (0.0, 0.0, 72.0, 48.0);
+left = "periodic"; right = "periodic";
+grains = ({ radius = 0.5; restitution = 1.0; }); placements = ({ count = 1; });
+lga = { spacing = 0.5; };
+walls = ({ shape = "disc"; center = (20.0, 24.0); radius = 10.0; },
+         { shape = "segment"; points = ((50.0, 13.0), (50.0, 48.0)); });""")
+        rows = re.findall(r"^ +\|(.*)\|$", self.say("check", scene), re.M)
+        self.assertEqual({len(row) for row in rows}, {72})
+        self.assertEqual(len(rows), 24)         # a character is 1 x 2, the box 72 x 48
+        for row, text in enumerate(rows):
+            y = 47 - 2 * row
+            for column, found in enumerate(text):
+                # Wall nodes lie at most a spacing (0.5) from the wall; what touches a character
+                # fills it, half its diagonal (1.12) from its middle.
+                x, reach = column + 0.5, 0.5 + 1.12
+                floor = min(y, 48 - y)
+                nearest = min(((x - 20) ** 2 + (y - 24) ** 2) ** 0.5 - 10,
+                              ((x - 50) ** 2 + max(13 - y, 0) ** 2) ** 0.5, floor)
+                if nearest > reach:
+                    self.assertEqual(found, " ", (x, y))
+                elif nearest < -reach:
+                    self.assertEqual(found, "#", (x, y))
+            self.assertEqual("#" in text[48:52], y > 12 or y < 2, y)
+
     # What a run writes
 
     def test_a_run_leaves_what_its_output_asks_for_and_nothing_unfinished(self):

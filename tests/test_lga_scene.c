@@ -181,6 +181,9 @@ static void test_a_sample_holds_what_the_list_of_grains_holds(void **unused)
             mean[1] += (-17.5 + 5 * floor((grains.y[i] + 20) / 5)) / grains.count;
         }
         CHECK_NEAR(sum[SAMPLE_COUNT], grains.count, 1e-9);
+        CHECK_NEAR(grains_number(&grains), (double)counters.grains, 1e-9);
+        CHECK_NEAR(grains_number(&(struct grains){.sample = field}),
+                   (double)counters.grains, 1e-9);
         CHECK_NEAR(sum[SAMPLE_MASS], grains.count * M_PI / 4, 1e-9);
         CHECK_NEAR(sum[SAMPLE_ENERGY], 2 * counters.kinetic_energy, 1e-9);
         CHECK_NEAR(sum[SAMPLE_MOMENTUM_X], counters.momentum_x, 1e-9);

@@ -35,6 +35,16 @@ void grains_free(struct grains *grains)
     arena_free(&arena);
 }
 
+double grains_number(const struct grains *grains)
+{
+    const struct field *sample = &grains->sample;
+    if (!sample->values) return grains->count;
+    const size_t cells = (size_t)sample->nx * sample->ny;
+    double sum = 0;
+    for (size_t k = 0; k < cells; k++) sum += sample->values[SAMPLE_COUNT * cells + k];
+    return sum;
+}
+
 struct rank { uint32_t id, row; };
 
 static int rank_compare(const void *a, const void *b)

@@ -50,6 +50,9 @@ bool grains_create(struct grains *grains, uint32_t capacity, uint32_t contact_ca
                    struct error *error);
 void grains_free(struct grains *grains);
 
+/* How many grains there are, listed or summed up in a sample. */
+double grains_number(const struct grains *grains);
+
 /* Brings the grains into the order of their ids, as readers expect who follow a grain by its row;
  * models keep them in any order.  The contacts, which name rows, are dropped. */
 bool grains_sort(struct grains *grains, struct error *error);

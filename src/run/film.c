@@ -92,17 +92,6 @@ static bool average(const struct film *film, const struct field *sample, struct 
     return true;
 }
 
-/* {n} of labels: a sample's grains are not listed. */
-static double grains_of(const struct grains *grains)
-{
-    const struct field *sample = &grains->sample;
-    double sum = sample->values ? 0 : grains->count;
-    for (size_t k = 0; sample->values && k < (size_t)sample->nx * sample->ny; k++) {
-        sum += sample->values[SAMPLE_COUNT * (size_t)sample->nx * sample->ny + k];
-    }
-    return sum;
-}
-
 static bool has_field(const struct film *film, const struct grains *grains)
 {
     return film->map || grains->sample.values;
@@ -210,7 +199,7 @@ bool film_draw(struct film *film, const struct grains *grains, uint64_t steps, d
     set_variable(film, 4, "wall", "%.1f", wall);
     set_variable(film, 5, "method", "%s", film->model->name);
     struct field field = {0};
-    set_variable(film, 6, "n", "%.0f", grains_of(grains));
+    set_variable(film, 6, "n", "%.0f", grains_number(grains));
     const bool shows = has_field(film, grains);
     if (shows && !make_field(film, grains, &field, error)) return false;
     struct picture picture = {

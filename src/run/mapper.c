@@ -97,7 +97,8 @@ void mapper_clear(struct mapper *mapper) { map_clear(mapper->map); }
 void mapper_add(struct mapper *mapper, const struct grains *grains)
 {
     map_add(mapper->map, grains);
-    snprintf(mapper->grains.text, sizeof mapper->grains.text, "%u", grains->count);
+    snprintf(mapper->grains.text, sizeof mapper->grains.text, "%.0f",
+             grains_number(grains));
 }
 
 static bool draw(struct mapper *mapper, const struct field *field, const char *path,

@@ -41,7 +41,8 @@ static const struct key keys[] = {
     {"s", KEY_REAL, ROW(s), "0", 0, 1, "1", NULL,
      "static friction: chance that a grain supported on one side stays"},
     {"frozen_friction", KEY_BOOL, ROW(frozen_friction), "false", NAN, NAN, NULL, NULL,
-     "gmlg: that chance is drawn once for each node and side, not anew in every tick"},
+     "gmlg: that chance is drawn once for each node and side, not anew in every tick; slopes "
+     "between those of the lattice and the upright then last"},
     {"pw", KEY_REAL, ROW(pw), "nan", 0, 1, "1", NULL,
      "chance that a grain stops at a wall or a full node instead of bouncing back; when absent k"},
     {"gain", KEY_REAL, ROW(gain), "1", 0, 1, "1", NULL,
