@@ -6,6 +6,7 @@
 
 #include "model/ed/ed_change.h"
 #include "model/ed/ed_epoch.h"
+#include "model/ed/ed_look.h"
 #include "model/ed/ed_shear.h"
 #include "model/ed/ed_watch.h"
 
@@ -264,40 +265,6 @@ static enum advance ed_advance(void *state, double t_end, uint64_t budget)
     }
 }
 
-static void ed_observe(const void *state, struct grains *out)
-{
-    const struct ed *ed = state;
-    const double t = ed_since_epoch(&ed->clock, ed->clock.present);
-    const double *w = out->window;
-    const bool all = w[0] > w[2];
-    out->time = ed->clock.present;
-    out->count = out->contact_count = out->missed = 0;
-    for (uint32_t i = 0; i < ed->count; i++) {
-        const struct ed_path p = ed_shear_place(ed, i, t);
-        const double x = p.x, y = p.y;
-        const double r = ed_radius(ed, i);
-        if (!all && (x + r < w[0] || y + r < w[1] || x - r > w[2] || y - r > w[3])) continue;
-        if (out->count == out->capacity) {
-            out->missed++;
-            continue;
-        }
-        const uint32_t k = out->count++;
-        if (out->id) out->id[k] = ed->id[i];
-        if (out->x) out->x[k] = x;
-        if (out->y) out->y[k] = y;
-        if (out->vx) out->vx[k] = p.vx;
-        if (out->vy) out->vy[k] = p.vy;
-        if (out->angle) out->angle[k] = ed->spin ? ed->angle[i] + t * ed->spin[i] : 0;
-        if (out->spin) out->spin[k] = ed->spin ? ed->spin[i] : 0;
-        if (out->radius) out->radius[k] = r;
-        if (out->mass) out->mass[k] = ed_mass(ed, i);
-        if (out->collision_rate) out->collision_rate[k] = ed->rate ? ed->rate[i] : 0;
-        if (out->collisions) out->collisions[k] = ed->begun ? ed->begun[i] : 0;
-        if (out->collisions_elastic) out->collisions_elastic[k] = ed->elastic ? ed->elastic[i] : 0;
-        if (out->species) out->species[k] = (uint16_t)ed_species(ed, i);
-    }
-}
-
 static void ed_push(void *state, const struct impulse *impulse)
 {
     struct ed *ed = state;
@@ -357,32 +324,6 @@ static void ed_archive(void *state, struct archive *archive)
     ed_queue_rebuild(&ed->queue, ed->events, ed->count, ed->clock.now, first_width(ed));
 }
 
-static void ed_count(const void *state, struct counters *out)
-{
-    const struct ed *ed = state;
-    const struct ed_clock *c = &ed->clock;
-    const double t = ed_since_epoch(c, c->present);
-    *out = (struct counters){.time = c->present, .steps = c->events, .grains = ed->count,
-        .grains_in = c->grains_in, .grains_out = c->grains_out, .collisions = c->collisions,
-        .collisions_elastic = c->elastic, .rejected = c->refused, .rebuilds = c->epochs};
-    for (uint32_t i = 0; i < ed->count; i++) {
-        const struct ed_grain *g = &ed->grains[i];
-        const double m = ed_mass(ed, i), r = ed_radius(ed, i);
-        const double x = g->x + t * (g->vx + 0.5 * ed->gx * t);
-        const double y = g->y + t * (g->vy + 0.5 * ed->gy * t), vy = g->vy + ed->gy * t;
-        const double vx = ed->sheared ? ed_shear_place(ed, i, t).vx : g->vx + ed->gx * t;
-        out->kinetic_energy += 0.5 * m * (vx * vx + vy * vy);
-        out->potential_energy -= m * (ed->gx * x + ed->gy * y);
-        out->momentum_x += m * vx;
-        out->momentum_y += m * vy;
-        if (!ed->spin) continue;
-        const double inertia = ed->law.inertia_factor[ed_species(ed, i)] * m * r * r;
-        out->rotational_energy += 0.5 * inertia * ed->spin[i] * ed->spin[i];
-        out->tangential = c->collisions + c->wall_contacts;
-    }
-    out->overlap_max = NAN;
-}
-
 static const struct tally *ed_tally(const void *state)
 {
     return &((const struct ed *)state)->tally;
@@ -418,10 +359,10 @@ const struct model model_ed = {
     .create   = ed_create,
     .destroy  = ed_destroy,
     .advance  = ed_advance,
-    .observe  = ed_observe,
+    .observe  = ed_look_observe,
     .push     = ed_push,
     .archive  = ed_archive,
-    .count    = ed_count,
+    .count    = ed_look_count,
     .tally    = ed_tally,
     .fault    = ed_fault,
 };
