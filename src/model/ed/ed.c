@@ -10,6 +10,7 @@
 #include "model/ed/ed_shear.h"
 #include "model/ed/ed_watch.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -133,8 +134,8 @@ static void place_grains(struct ed *ed)
 /* Expects that a grain meets something every tenth of a diameter; it is corrected as it runs. */
 static double first_width(const struct ed *ed)
 {
-    const double step = ed->clock.stuck_step;           /* a known share of diameter over speed */
-    return step > 0 ? 1e9 * step * ED_BUCKET_FILL / fmax(ed->count, 1) : 1;
+    const double speed = ed->clock.typical;
+    return speed > 0 ? 0.2 * ed->radius_one / speed * ED_BUCKET_FILL / fmax(ed->count, 1) : 1;
 }
 
 /* Events of all grains from nothing, at the present. */
@@ -146,6 +147,7 @@ static void start_anew(struct ed *ed)
     ed_shear_begin(ed);
     ed->clock.gx = ed->gx;
     ed->clock.gy = ed->gy;
+    ed->clock.pace = 0;                                 /* to be taken anew */
     walls->change = 0;
     while (walls->change < walls->change_count
            && walls->changes[walls->change] <= ed->clock.present) walls->change++;
@@ -215,6 +217,18 @@ static void *ed_create(const struct scene *scene, struct error *error)
     return ed;
 }
 
+/* Grains so many times faster than the scene lets expect were driven, and not left alone. */
+static const double heated = 10;
+
+static bool wall_runs(const struct ed *ed)
+{
+    bool runs = false;
+    for (uint32_t w = 0; w < ed->walls.count; w++) {
+        runs = runs || ed->walls.now[w].vx != 0 || ed->walls.now[w].vy != 0;
+    }
+    return runs;
+}
+
 /* The soonest event says where time has stopped. */
 static void tell_stuck(struct ed *ed)
 {
@@ -226,13 +240,22 @@ static void tell_stuck(struct ed *ed)
     struct fault *fault = &ed->fault;
     *fault = (struct fault){.time = ed_scene_time(&ed->clock, ed->clock.now), .x = p.x, .y = p.y,
                             .grain = ed->id[i]};
+    if (ed->clock.typical > heated * ed->clock.pace) {
+        snprintf(fault->text, sizeof fault->text,
+            "time stopped at %.9g: grain %u at (%.4g, %.4g) and the others have no room left and "
+            "collide ever faster (at a speed of %.2g, where %.2g was expected); what presses them "
+            "or drives them must end before (walls.moves), or use a model of soft discs",
+            fault->time, fault->grain, p.x, p.y, ed->clock.typical, ed->clock.pace);
+        return;
+    }
     const double t_c = ed->law.t_c;
     snprintf(fault->text, sizeof fault->text,
         "time stopped at %.9g: grain %u at (%.4g, %.4g) and its neighbours collide ever faster "
         "(inelastic collapse, or grains that rest on each other); %s ed.t_c%s to the duration of a "
-        "contact, for instance %.2g", fault->time, fault->grain, p.x, p.y,
+        "contact, for instance %.2g%s", fault->time, fault->grain, p.x, p.y,
         t_c > 0 ? "raise" : "set", t_c > 0 ? "" : " (now 0)",
-        fmax(10 * t_c, 1e4 * ed->clock.stuck_step));
+        fmax(10 * t_c, 2e-6 * ed->radius_one / fmax(ed->clock.typical, DBL_MIN)),
+        wall_runs(ed) ? "; or let the wall that presses them end before (walls.moves)" : "");
 }
 
 static enum advance ed_advance(void *state, double t_end, uint64_t budget)
