@@ -114,6 +114,52 @@ static void test_a_clock_that_stands_still_is_noticed_and_named(void **unused)
     scenes_end(run);
 }
 
+/* Two grains in a channel that just lets them through, and a wall that comes at speed 1 from
+ * x = 9 and stops at `ends`; at x = 2 it leaves no room. */
+static struct scenes_run *squeeze(double ends)
+{
+    char text[800];
+    snprintf(text, sizeof text, "until = 100.0; box = [0.0, 0.0, 10.0, 1.001];"
+        "grains = ({ radius = 0.5; restitution = 0.9; });"
+        "placements = ({ region = [3.0, 0.0, 4.0, 1.0]; kind = \"square\"; count = 1;"
+        "                velocity = (1.0, 0.0); },"
+        "              { region = [6.0, 0.0, 7.0, 1.0]; kind = \"square\"; count = 1;"
+        "                velocity = (-0.5, 0.0); });"
+        "walls = ({ shape = \"segment\"; points = ((9.0, 0.0), (9.0, 1.001));"
+        "           velocity = (-1.0, 0.0); moves = (0.0, %.17g); });"
+        "ed = { t_c = 1e3; };", 9 - ends);
+    return scenes_begin(text, "ed");
+}
+
+static void test_a_wall_that_leaves_no_room_stops_the_clock_and_is_named(void **unused)
+{
+    (void)unused;
+    /* t_c is longer than the run: blows lose nothing, and speeds go as one over the room left. */
+    struct scenes_run *run = squeeze(1);
+    struct error error = {.text = ""};
+    CHECK(simulation_advance(&run->sim, 100, 20000000, &error) == ADVANCE_BROKEN);
+    CHECK(strstr(error.text, "time stopped at") && strstr(error.text, "no room left"));
+    CHECK(strstr(error.text, "walls.moves"));
+    /* Two million events for 1e-3 of time are due where the room left is some 1e-5. */
+    CHECK_NEAR(simulation_count(&run->sim).time, 7, 1e-4);
+    scenes_end(run);
+}
+
+static void test_a_wall_that_leaves_a_thousandth_of_room_stops_nothing(void **unused)
+{
+    (void)unused;
+    struct scenes_run *run = squeeze(2.001);
+    scenes_advance(run, 7);
+    const struct counters a = simulation_count(&run->sim);
+    scenes_advance(run, 7.2);
+    const struct counters b = simulation_count(&run->sim);
+    /* Compression heated them by far, and no blow takes that away. */
+    CHECK(a.kinetic_energy > 1e4);
+    CHECK_NEAR(b.kinetic_energy / a.kinetic_energy, 1, 1e-6);
+    CHECK(b.steps - a.steps > 100000);
+    scenes_end(run);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -122,6 +168,8 @@ int main(void)
         cmocka_unit_test(test_energy_lost_is_what_the_collisions_took),
         cmocka_unit_test(test_many_events_at_one_time_are_all_carried_out),
         cmocka_unit_test(test_a_clock_that_stands_still_is_noticed_and_named),
+        cmocka_unit_test(test_a_wall_that_leaves_no_room_stops_the_clock_and_is_named),
+        cmocka_unit_test(test_a_wall_that_leaves_a_thousandth_of_room_stops_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

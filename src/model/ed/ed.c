@@ -6,9 +6,11 @@
 
 #include "model/ed/ed_change.h"
 #include "model/ed/ed_epoch.h"
+#include "model/ed/ed_look.h"
 #include "model/ed/ed_shear.h"
 #include "model/ed/ed_watch.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -132,8 +134,8 @@ static void place_grains(struct ed *ed)
 /* Expects that a grain meets something every tenth of a diameter; it is corrected as it runs. */
 static double first_width(const struct ed *ed)
 {
-    const double step = ed->clock.stuck_step;           /* a known share of diameter over speed */
-    return step > 0 ? 1e9 * step * ED_BUCKET_FILL / fmax(ed->count, 1) : 1;
+    const double speed = ed->clock.typical;
+    return speed > 0 ? 0.2 * ed->radius_one / speed * ED_BUCKET_FILL / fmax(ed->count, 1) : 1;
 }
 
 /* Events of all grains from nothing, at the present. */
@@ -145,6 +147,7 @@ static void start_anew(struct ed *ed)
     ed_shear_begin(ed);
     ed->clock.gx = ed->gx;
     ed->clock.gy = ed->gy;
+    ed->clock.pace = 0;                                 /* to be taken anew */
     walls->change = 0;
     while (walls->change < walls->change_count
            && walls->changes[walls->change] <= ed->clock.present) walls->change++;
@@ -214,6 +217,18 @@ static void *ed_create(const struct scene *scene, struct error *error)
     return ed;
 }
 
+/* Grains so many times faster than the scene lets expect were driven, and not left alone. */
+static const double heated = 10;
+
+static bool wall_runs(const struct ed *ed)
+{
+    bool runs = false;
+    for (uint32_t w = 0; w < ed->walls.count; w++) {
+        runs = runs || ed->walls.now[w].vx != 0 || ed->walls.now[w].vy != 0;
+    }
+    return runs;
+}
+
 /* The soonest event says where time has stopped. */
 static void tell_stuck(struct ed *ed)
 {
@@ -225,13 +240,22 @@ static void tell_stuck(struct ed *ed)
     struct fault *fault = &ed->fault;
     *fault = (struct fault){.time = ed_scene_time(&ed->clock, ed->clock.now), .x = p.x, .y = p.y,
                             .grain = ed->id[i]};
+    if (ed->clock.typical > heated * ed->clock.pace) {
+        snprintf(fault->text, sizeof fault->text,
+            "time stopped at %.9g: grain %u at (%.4g, %.4g) and the others have no room left and "
+            "collide ever faster (at a speed of %.2g, where %.2g was expected); what presses them "
+            "or drives them must end before (walls.moves), or use a model of soft discs",
+            fault->time, fault->grain, p.x, p.y, ed->clock.typical, ed->clock.pace);
+        return;
+    }
     const double t_c = ed->law.t_c;
     snprintf(fault->text, sizeof fault->text,
         "time stopped at %.9g: grain %u at (%.4g, %.4g) and its neighbours collide ever faster "
         "(inelastic collapse, or grains that rest on each other); %s ed.t_c%s to the duration of a "
-        "contact, for instance %.2g", fault->time, fault->grain, p.x, p.y,
+        "contact, for instance %.2g%s", fault->time, fault->grain, p.x, p.y,
         t_c > 0 ? "raise" : "set", t_c > 0 ? "" : " (now 0)",
-        fmax(10 * t_c, 1e4 * ed->clock.stuck_step));
+        fmax(10 * t_c, 2e-6 * ed->radius_one / fmax(ed->clock.typical, DBL_MIN)),
+        wall_runs(ed) ? "; or let the wall that presses them end before (walls.moves)" : "");
 }
 
 static enum advance ed_advance(void *state, double t_end, uint64_t budget)
@@ -261,40 +285,6 @@ static enum advance ed_advance(void *state, double t_end, uint64_t budget)
             clock->present = fmax(clock->present, t_end);
             return ADVANCE_REACHED;
         }
-    }
-}
-
-static void ed_observe(const void *state, struct grains *out)
-{
-    const struct ed *ed = state;
-    const double t = ed_since_epoch(&ed->clock, ed->clock.present);
-    const double *w = out->window;
-    const bool all = w[0] > w[2];
-    out->time = ed->clock.present;
-    out->count = out->contact_count = out->missed = 0;
-    for (uint32_t i = 0; i < ed->count; i++) {
-        const struct ed_path p = ed_shear_place(ed, i, t);
-        const double x = p.x, y = p.y;
-        const double r = ed_radius(ed, i);
-        if (!all && (x + r < w[0] || y + r < w[1] || x - r > w[2] || y - r > w[3])) continue;
-        if (out->count == out->capacity) {
-            out->missed++;
-            continue;
-        }
-        const uint32_t k = out->count++;
-        if (out->id) out->id[k] = ed->id[i];
-        if (out->x) out->x[k] = x;
-        if (out->y) out->y[k] = y;
-        if (out->vx) out->vx[k] = p.vx;
-        if (out->vy) out->vy[k] = p.vy;
-        if (out->angle) out->angle[k] = ed->spin ? ed->angle[i] + t * ed->spin[i] : 0;
-        if (out->spin) out->spin[k] = ed->spin ? ed->spin[i] : 0;
-        if (out->radius) out->radius[k] = r;
-        if (out->mass) out->mass[k] = ed_mass(ed, i);
-        if (out->collision_rate) out->collision_rate[k] = ed->rate ? ed->rate[i] : 0;
-        if (out->collisions) out->collisions[k] = ed->begun ? ed->begun[i] : 0;
-        if (out->collisions_elastic) out->collisions_elastic[k] = ed->elastic ? ed->elastic[i] : 0;
-        if (out->species) out->species[k] = (uint16_t)ed_species(ed, i);
     }
 }
 
@@ -357,32 +347,6 @@ static void ed_archive(void *state, struct archive *archive)
     ed_queue_rebuild(&ed->queue, ed->events, ed->count, ed->clock.now, first_width(ed));
 }
 
-static void ed_count(const void *state, struct counters *out)
-{
-    const struct ed *ed = state;
-    const struct ed_clock *c = &ed->clock;
-    const double t = ed_since_epoch(c, c->present);
-    *out = (struct counters){.time = c->present, .steps = c->events, .grains = ed->count,
-        .grains_in = c->grains_in, .grains_out = c->grains_out, .collisions = c->collisions,
-        .collisions_elastic = c->elastic, .rejected = c->refused, .rebuilds = c->epochs};
-    for (uint32_t i = 0; i < ed->count; i++) {
-        const struct ed_grain *g = &ed->grains[i];
-        const double m = ed_mass(ed, i), r = ed_radius(ed, i);
-        const double x = g->x + t * (g->vx + 0.5 * ed->gx * t);
-        const double y = g->y + t * (g->vy + 0.5 * ed->gy * t), vy = g->vy + ed->gy * t;
-        const double vx = ed->sheared ? ed_shear_place(ed, i, t).vx : g->vx + ed->gx * t;
-        out->kinetic_energy += 0.5 * m * (vx * vx + vy * vy);
-        out->potential_energy -= m * (ed->gx * x + ed->gy * y);
-        out->momentum_x += m * vx;
-        out->momentum_y += m * vy;
-        if (!ed->spin) continue;
-        const double inertia = ed->law.inertia_factor[ed_species(ed, i)] * m * r * r;
-        out->rotational_energy += 0.5 * inertia * ed->spin[i] * ed->spin[i];
-        out->tangential = c->collisions + c->wall_contacts;
-    }
-    out->overlap_max = NAN;
-}
-
 static const struct tally *ed_tally(const void *state)
 {
     return &((const struct ed *)state)->tally;
@@ -418,10 +382,10 @@ const struct model model_ed = {
     .create   = ed_create,
     .destroy  = ed_destroy,
     .advance  = ed_advance,
-    .observe  = ed_observe,
+    .observe  = ed_look_observe,
     .push     = ed_push,
     .archive  = ed_archive,
-    .count    = ed_count,
+    .count    = ed_look_count,
     .tally    = ed_tally,
     .fault    = ed_fault,
 };

@@ -51,6 +51,7 @@ struct ed_clock {
     double   present;           /* scene time that the run has reached */
     double   epoch_end;         /* the epoch moves up when `now` passes this */
     double   noise;             /* a velocity below this is rounding */
+    double   typical, pace;     /* speeds: of the grains now; expected of the scene (ed_epoch.c) */
     double   stuck_mark;        /* when `now` passes this, time is not stuck */
     double   stuck_step;        /* how far the mark then moves on */
     uint64_t stuck_events;      /* events since the mark was set */
@@ -66,6 +67,9 @@ struct ed_clock {
     double   slide;             /* when it has slid by a cell, since the epoch */
     int64_t  ahead_cells;       /* until then it is so many whole cells ahead */
 };
+
+/* So many events must bring the clock on by stuck_step. */
+enum { ED_STUCK_EVENTS = 2000000 };
 
 /* Why the loop over events came back. */
 enum ed_stop { ED_LIMIT, ED_BUDGET, ED_EPOCH, ED_STUCK };

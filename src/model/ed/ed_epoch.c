@@ -11,6 +11,7 @@
 
 #include "model/ed/ed.h"
 #include "model/ed/ed_shear.h"
+#include "model/speed.h"
 
 #include <math.h>
 
@@ -24,9 +25,18 @@ static const double way_max = 1e4;
  * overlap takes 1e4 free falls through a grain to grow to 1e-9. */
 static const double noise_share = 1e-15, noise_at_rest = 1e-13;
 
-/* Time counts as stuck if 2e6 events bring it on by less than this share of a grain's diameter
+/* Time counts as stuck if ED_STUCK_EVENTS bring it on by less than this share of a grain's diameter
  * over its speed. */
 static const double stuck_share = 1e-10;
+
+/* It also does if every grain has more events than this while it could go its diameter at the pace
+ * of the scene.  Where a wall leaves no room, grains grow faster as their gaps shrink, and time
+ * told by their speed always moves on.  A gas has as many events as it has gaps in a diameter:
+ * 1e9 of them are as narrow as an overlap may be, and one grain takes minutes for a diameter. */
+static const double events_most = 1e9;
+
+/* But t_c may be chosen so short that a bed at rest, with some ten contacts in t_c, has more. */
+static const double contacts_most = 1e3;
 
 void ed_epoch_copy(struct ed *ed, uint32_t to, uint32_t from)
 {
@@ -125,6 +135,18 @@ static void sort_in_space(struct ed *ed)
     }
 }
 
+/* The time in which ED_STUCK_EVENTS are due at the latest. */
+static double stuck_step(const struct ed *ed)
+{
+    const struct ed_clock *clock = &ed->clock;
+    const double d = 2 * ed->radius_one;
+    const double own = clock->typical > 0 ? stuck_share * d / clock->typical : 0;
+    if (clock->pace == 0 || ed->count == 0) return own;
+    double rate = events_most * clock->pace / d;
+    if (ed->law.t_c > 0) rate = fmax(rate, contacts_most / ed->law.t_c);
+    return fmax(own, ED_STUCK_EVENTS / (rate * ed->count));
+}
+
 /* The speeds and times that thresholds are measured by. */
 static void take_measures(struct ed *ed)
 {
@@ -146,7 +168,9 @@ static void take_measures(struct ed *ed)
     /* Without the TC rule a lossy gas may collapse, and that shall be seen, not rounded away. */
     const bool collapses = ed->law.t_c == 0 && ed->effects & EFFECT_DISSIPATION;
     clock->noise = collapses ? 0 : fmax(noise_share * fastest, noise_at_rest * sqrt(g * d));
-    clock->stuck_step = typical > 0 ? stuck_share * d / typical : 0;
+    clock->typical = typical;
+    if (clock->pace == 0) clock->pace = fmax(typical, speed_greatest(ed->scene));
+    clock->stuck_step = stuck_step(ed);
     /* v t + g t^2 / 2 = way, in the form that does not cancel. */
     const double way = way_max * d, speed = fmax(fastest, typical);
     const double root = speed + sqrt(speed * speed + 2 * g * way);

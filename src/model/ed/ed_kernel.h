@@ -33,8 +33,6 @@ enum {
     CROWDED = 4096              /* events that arise in an open bucket before it is too wide */
 };
 
-static const uint64_t stuck_events = 2000000;
-
 static void make_room(struct ed *ed)
 {
     ed_queue_rebuild(&ed->queue, ed->events, ed->count, ed->clock.now, 1 / ed->queue.per_time);
@@ -432,7 +430,7 @@ FORCE_INLINE bool is_stuck(struct ed_clock *clock)
         clock->stuck_events = 0;
         return false;
     }
-    return ++clock->stuck_events > stuck_events;
+    return ++clock->stuck_events > ED_STUCK_EVENTS;
 }
 
 FORCE_INLINE enum ed_stop run(struct ed *ed, double limit, uint64_t *budget, int with)
