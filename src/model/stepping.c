@@ -31,6 +31,13 @@ double stepping_window(const struct scene *scene, double dt)
     return scene->output.frames > 0 ? scene->output.frames : 100 * dt;
 }
 
+/* Time counts from 0 and goes on; a clock far back would let the run take steps without end. */
+static bool clock_holds(struct stepping_clock clock, double dt)
+{
+    const double time = *clock.epoch + (double)*clock.here * dt;
+    return dt > 0 && isfinite(dt) && *clock.epoch >= 0 && isfinite(time);
+}
+
 double stepping_archive(struct archive *archive, const char *model, double dt,
                         struct stepping_clock clock)
 {
@@ -44,6 +51,10 @@ double stepping_archive(struct archive *archive, const char *model, double dt,
     archive_value(archive, name, clock.steps);
     snprintf(name, sizeof name, "%s.steps_here", model);
     archive_value(archive, name, clock.here);
+    if (archive->mode == ARCHIVE_LOAD && !archive->failed && !clock_holds(clock, old)) {
+        archive_fail(archive, "the saved clock does not show a time");
+        return dt;
+    }
     if (old == dt) return dt;
     *clock.epoch += (double)*clock.here * old;
     *clock.here = 0;

@@ -5,6 +5,7 @@
 #include "model/ed/ed.h"
 
 #include "model/ed/ed_change.h"
+#include "model/ed/ed_check.h"
 #include "model/ed/ed_epoch.h"
 #include "model/ed/ed_look.h"
 #include "model/ed/ed_shear.h"
@@ -335,6 +336,12 @@ static void ed_archive(void *state, struct archive *archive)
         ed_cells_archive(&ed->cells, archive);
     }
     if (!loads || archive->failed) return;
+    const char *wrong = ed_check_grains(ed);
+    if (!wrong && same) wrong = ed_check_events(ed);
+    if (wrong) {
+        archive_fail(archive, wrong);
+        return;
+    }
     ed->fault = (struct fault){0};
     ed->sheared |= ed->clock.ahead != 0 || ed->clock.shear_speed != 0;
     ed->clock.fingerprint = own;

@@ -335,6 +335,25 @@ static void lga_count(const void *state, struct counters *out)
     }
 }
 
+/* The hashes of a checkpoint tell damage, not intent: what was written on purpose must not lead
+ * out of a table.  Bits behind the columns of a row belong to nobody and are cleared. */
+static const char *check_loaded(struct lga *lga, double tick)
+{
+    if (!(tick > 0) || !isfinite(tick) || lga->base_ticks > lga->ticks || !(lga->base_time >= 0)
+        || !isfinite(lga->base_time)) return "the saved clock does not show a time";
+    const uint8_t rest_max = lga->rule.method == LGA_GMLG ? LGA_ROOM : 1;
+    for (uint32_t n = 0; n < lga->sites && !lga->bits; n++) {
+        if (lga->rest[n] > rest_max || lga->moving[n] >= LGA_STATES) {
+            return "the saved lattice holds a node in an impossible state";
+        }
+    }
+    for (uint32_t n = 0; n < lga->sites && lga->heap; n++) {
+        if (lga->heap[n] > 1) return "the saved lattice holds a node in an impossible state";
+    }
+    for (uint32_t row = 0; row < lga->lattice.rows && lga->bits; row++) lga_bits_trim(lga, row);
+    return NULL;
+}
+
 static void lga_archive(void *state, struct archive *archive)
 {
     struct lga *lga = state;
@@ -361,11 +380,10 @@ static void lga_archive(void *state, struct archive *archive)
         archive_value(archive, name, &lga->entered[k]);
     }
     if (archive->mode != ARCHIVE_LOAD || archive->failed) return;
-    for (uint32_t n = 0; n < lga->sites && !lga->bits; n++) {
-        if (lga->rest[n] > LGA_ROOM || lga->moving[n] >= LGA_STATES) {
-            archive_fail(archive, "the saved lattice holds a node in an impossible state");
-            return;
-        }
+    const char *wrong = check_loaded(lga, tick);
+    if (wrong) {
+        archive_fail(archive, wrong);
+        return;
     }
     if (tick != lga->tick) {            /* this phase ticks otherwise: count its time from here */
         lga->base_time += (double)(lga->ticks - lga->base_ticks) * tick;

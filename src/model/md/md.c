@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: GPL-3.0-or-later */
 #include "model/md/md.h"
 
+#include "model/md/md_check.h"
 #include "model/md/md_fault.h"
 #include "model/md/md_flow.h"
 #include "model/md/md_list.h"
@@ -169,8 +170,10 @@ static void archive_list(struct md *md, struct archive *archive)
     uint64_t signature = list_signature(md);
     const uint64_t own = signature;
     uint32_t strips = md->strip_count;
+    uint8_t stale = md->stale;          /* as a number: a loaded byte may be neither yes nor no */
     archive_value(archive, "md.signature", &signature);
-    archive_value(archive, "md.stale", &md->stale);
+    archive_value(archive, "md.stale", &stale);
+    md->stale = stale != 0;
     archive_value(archive, "md.travel", &md->travel);
     archive_value(archive, "md.stride", &md->stride);
     archive_count(archive, "md.links", &md->link_count, md->link_max);
@@ -240,7 +243,10 @@ static void md_archive(void *state, struct archive *archive)
         archive_value(archive, names[k], totals[k]);
     }
     tally_archive(&md->tally, archive);
-    if (archive->mode == ARCHIVE_LOAD && md->wall_here) md_walls_place(md);
+    if (archive->mode != ARCHIVE_LOAD || archive->failed) return;
+    const char *wrong = md_check(md);
+    if (wrong) archive_fail(archive, wrong);
+    else if (md->wall_here) md_walls_place(md);
 }
 
 static const struct tally *md_tally(const void *state)
