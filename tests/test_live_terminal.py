@@ -37,6 +37,7 @@ class Terminal:
         self.child, self.line = pty.fork()
         if self.child == 0:
             os.environ["TERM"] = "xterm-256color"
+            signal.signal(signal.SIGHUP, signal.SIG_DFL)    # ignored if the tests were by nohup
             os.execv(PROGRAM, [PROGRAM, "live", "scene.cfg", "-o", "run", "--force"])
         self.seen = b""
         self.modes = termios.tcgetattr(self.line)
