@@ -50,8 +50,8 @@ static void test_a_dilute_gas_cools_alike_with_hard_and_soft_discs(void **unused
                       mean, error);
         CHECK(level[k] < 0.8 && level[k] > 0.1);
         CHECK(error < 0.006);
-        /* Three standard errors.  A contact that lasts 7e-3 delays each collision of a grain by that
-         * of the 2 between two: 0.35 % of the rate, and less of E as long as d ln E / d ln t < 1.
+        /* Three standard errors.  A contact that lasts 7e-3 delays each collision of a grain by
+         * that of the 2 between two: 0.35 % of the rate, and less of E while d ln E / d ln t < 1.
          * As large a share of the grains is in contact and holds some of its energy there. */
         CHECK_NEAR(mean, 1, 3 * error + 0.005);
     }
