@@ -156,6 +156,8 @@ static void test_a_forged_state_is_refused_or_runs(void **unused)
             for (uint32_t k = 0; k < (*m)->settings->count; k++) {
                 const struct key *key = &(*m)->settings->keys[k];
                 if (key->type != KEY_CHOICE) continue;
+                /* How Hertz's law is damped is found at length, each time a state is made. */
+                if (strcmp(key->name, "force") == 0 && s > 0) continue;
                 char choices[400], setting[500], *rest = choices;
                 snprintf(choices, sizeof choices, "%s", key->choices);
                 for (char *word; (word = strsep(&rest, "|"));) {

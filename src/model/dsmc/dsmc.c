@@ -177,7 +177,8 @@ static bool grains_hold(const struct dsmc *dsmc)
 {
     for (uint32_t i = 0; i < dsmc->count; i++) {
         const struct dsmc_grain *g = &dsmc->grains[i];
-        if (!isfinite(g->x) || !isfinite(g->y) || !isfinite(g->vx) || !isfinite(g->vy)) return false;
+        if (!isfinite(g->x) || !isfinite(g->y)) return false;
+        if (!isfinite(g->vx) || !isfinite(g->vy)) return false;
         if (dsmc->spins && !isfinite(dsmc->spins[i])) return false;
     }
     return true;

@@ -21,8 +21,9 @@
 
 #define FORCE_INLINE static inline __attribute__((always_inline))
 
-/* Addition, multiplication, division and square root round alike in all of them. */
-#if defined(__x86_64__) && defined(__gnu_linux__)
+/* Addition, multiplication, division and square root round alike in all of them.  Clang gives such
+ * a function a name that other files do not find. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__)
 #define CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define CLONES
