@@ -10,6 +10,7 @@
 #include <signal.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -49,6 +50,8 @@ static _Noreturn void watch(int line, const struct termios *found)
     ssize_t got;
     setsid();                   /* what kills the program's group does not reach it */
     signal(SIGTTOU, SIG_IGN);
+    signal(SIGHUP, SIG_IGN);
+    if (write(line, "", 1) != 1) _exit(1);
     do {
         got = read(line, &byte, 1);
     } while (got < 0 && errno == EINTR);
@@ -62,8 +65,9 @@ static _Noreturn void watch(int line, const struct termios *found)
 static bool start_watcher(struct tty *tty, struct error *error)
 {
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) {
-        return error_set(error, "no pipe for a watcher: %s", strerror(errno));
+    char byte;
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+        return error_set(error, "no line to a watcher: %s", strerror(errno));
     }
     tty->watcher = fork();
     if (tty->watcher == 0) {
@@ -71,7 +75,8 @@ static bool start_watcher(struct tty *tty, struct error *error)
         watch(ends[0], &tty->found);
     }
     close(ends[0]);
-    if (tty->watcher > 0) {
+    /* Only once it is on its own is the terminal changed. */
+    if (tty->watcher > 0 && read(ends[1], &byte, 1) == 1) {
         tty->line = ends[1];
         return true;
     }
