@@ -34,9 +34,9 @@ struct md_scratch {
     struct gear  *gears;
     uint32_t *collisions;
     float    *collision_rate;
-    uint32_t *kept_first;       /* [count + 1]: contacts that go on, by their new first grain */
-    uint32_t *kept_partner;
-    double   *kept_spring;
+    uint32_t *kept_first;       /* contacts that go on: the first of those whose new first grain */
+    uint32_t *kept_next;        /* this is, the next of them by link, NONE at the end */
+    uint32_t *kept_partner;     /* by link */
     struct link *links;         /* stretches of the strips: inner from below, cross from above */
     double   *springs;
     uint32_t *inner, *cross;    /* by strip: how many */
@@ -75,9 +75,9 @@ bool md_list_create(struct md *md)
         && arena_array(arena, &s->gears, md->gears ? n : 0)
         && arena_array(arena, &s->collisions, md->collisions ? n : 0)
         && arena_array(arena, &s->collision_rate, md->collisions ? n : 0)
-        && arena_array(arena, &s->kept_first, n + 1)
+        && arena_array(arena, &s->kept_first, n)
+        && arena_array(arena, &s->kept_next, md->link_max)
         && arena_array(arena, &s->kept_partner, md->link_max)
-        && arena_array(arena, &s->kept_spring, springs ? md->link_max : 0)
         && arena_array(arena, &s->links, md->link_max)
         && arena_array(arena, &s->springs, springs ? md->link_max : 0)
         && arena_array(arena, &s->inner, md->strip_max)
@@ -106,10 +106,11 @@ static void lay_cells(struct md *md)
     const double *box = md->scene->box;
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (uint32_t i = 0; i < md->count; i++) {
-        low[0] = fmin(low[0], md->grains[i].x);
-        high[0] = fmax(high[0], md->grains[i].x);
-        low[1] = fmin(low[1], md->grains[i].y);
-        high[1] = fmax(high[1], md->grains[i].y);
+        const double x = md->grains[i].x, y = md->grains[i].y;
+        low[0] = x < low[0] ? x : low[0];
+        high[0] = x > high[0] ? x : high[0];
+        low[1] = y < low[1] ? y : low[1];
+        high[1] = y > high[1] ? y : high[1];
     }
     const bool periodic[2] = {md->scene->left == BORDER_PERIODIC,
                               md->scene->bottom == BORDER_PERIODIC};
@@ -207,32 +208,21 @@ static void permute(struct md *md)
     SWAP(md->collision_rate, s->collision_rate);
 }
 
-/* Sets the contacts of the old list aside, by the new index of their first grain. */
+/* Chains the contacts of the old list by the new index of their first grain. */
 static void keep_contacts(struct md *md)
 {
     struct md_scratch *s = md->scratch;
-    memset(s->kept_first, 0, ((size_t)md->count + 1) * sizeof *s->kept_first);
-    for (int pass = 0; pass < 2; pass++) {
-        for (uint32_t k = 0; k < md->link_count; k++) {
-            const struct link link = md->links[k];
-            if (!(link.j & LINK_TOUCHES)) continue;
-            const uint32_t a = s->place[link.i], b = s->place[link.j & LINK_INDEX];
-            if (a == NONE || b == NONE) continue;
-            const uint32_t owner = a < b ? a : b;
-            if (pass == 0) {
-                s->kept_first[owner + 1]++;
-                continue;
-            }
-            const uint32_t at = s->kept_first[owner]++;
-            s->kept_partner[at] = a < b ? b : a;
-            if (s->kept_spring) s->kept_spring[at] = md->springs[k];
-        }
-        if (pass == 0) {
-            for (uint32_t i = 0; i < md->count; i++) s->kept_first[i + 1] += s->kept_first[i];
-        }
+    for (uint32_t i = 0; i < md->count; i++) s->kept_first[i] = NONE;
+    for (uint32_t k = 0; k < md->link_count; k++) {
+        const struct link link = md->links[k];
+        if (!(link.j & LINK_TOUCHES)) continue;
+        const uint32_t a = s->place[link.i], b = s->place[link.j & LINK_INDEX];
+        if (a == NONE || b == NONE) continue;
+        const uint32_t owner = a < b ? a : b;
+        s->kept_partner[k] = a < b ? b : a;
+        s->kept_next[k] = s->kept_first[owner];
+        s->kept_first[owner] = k;
     }
-    for (uint32_t i = md->count; i > 0; i--) s->kept_first[i] = s->kept_first[i - 1];
-    s->kept_first[0] = 0;
 }
 
 static void cut_strips(struct md *md)
@@ -292,14 +282,16 @@ static uint32_t neighbourhood(const struct md *md, uint32_t cx, uint32_t cy,
     return count;
 }
 
-static void carry_contact(const struct md_scratch *s, uint32_t i, uint32_t j, struct link *link,
+/* The old list, its springs with it, is whole until the new one is. */
+static void carry_contact(const struct md *md, uint32_t i, uint32_t j, struct link *link,
                           double *spring)
 {
+    const struct md_scratch *s = md->scratch;
     if (spring) *spring = 0;
-    for (uint32_t k = s->kept_first[i]; k < s->kept_first[i + 1]; k++) {
+    for (uint32_t k = s->kept_first[i]; k != NONE; k = s->kept_next[k]) {
         if (s->kept_partner[k] != j) continue;
         link->j |= LINK_TOUCHES;
-        if (spring) *spring = s->kept_spring[k];
+        if (spring) *spring = md->springs[k];
         return;
     }
 }
@@ -335,7 +327,7 @@ static bool list_strip(struct md *md, uint32_t t)
                 const bool crosses = j >= strip->last;
                 const uint32_t at = begin + (crosses ? room - ++cross : inner++);
                 s->links[at] = (struct link){i, j | around[r].image << LINK_IMAGE_SHIFT};
-                carry_contact(s, i, j, &s->links[at], s->springs ? &s->springs[at] : NULL);
+                carry_contact(md, i, j, &s->links[at], s->springs ? &s->springs[at] : NULL);
             }
         }
     }
@@ -365,12 +357,16 @@ static bool join_strips(struct md *md)
     inner = 0;
     for (uint32_t t = 0; t < md->strip_count; t++) {
         struct strip *strip = &md->strips[t];
-        const uint32_t begin = strip->first * s->links_per_grain;
-        const uint32_t end = strip->last * s->links_per_grain;
         strip->link_first = inner;
         strip->link_last = inner += s->inner[t];
         strip->cross_first = cross;
         strip->cross_last = cross += s->cross[t];
+    }
+    SHARED_LOOP
+    for (uint32_t t = 0; t < md->strip_count; t++) {
+        const struct strip *strip = &md->strips[t];
+        const uint32_t begin = strip->first * s->links_per_grain;
+        const uint32_t end = strip->last * s->links_per_grain;
         move_links(md, strip->link_first, begin, s->inner[t]);
         move_links(md, strip->cross_first, end - s->cross[t], s->cross[t]);
     }
