@@ -110,4 +110,26 @@ static inline void check_cooling(struct lga_rule rule, bool never_warms, const d
     }
 }
 
+/* Movers turned by 60 degrees, and mirrored about direction 0. */
+static inline unsigned gas_turned(unsigned m) { return (m << 1 | m >> 5) & 0x3f; }
+
+static inline unsigned gas_mirrored(unsigned m)
+{
+    unsigned out = 0;
+    for (int d = 0; d < LGA_DIRECTIONS; d++) if (m >> d & 1) out |= 1u << ((6 - d) % 6);
+    return out;
+}
+
+/* The weight with which (m, r) becomes (to, rest); what has no entry stays. */
+static inline int gas_weight(const struct lga_case *entry, unsigned m, int r, unsigned to, int rest)
+{
+    int sum = entry->count == 0 && to == m && rest == r ? LGA_WEIGHT : 0;
+    for (int k = 0; k < entry->count; k++) {
+        if (entry->outcome[k].moving == to && entry->outcome[k].rest == rest) {
+            sum += entry->outcome[k].weight;
+        }
+    }
+    return sum;
+}
+
 #endif

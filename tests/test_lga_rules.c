@@ -60,25 +60,9 @@ static void test_elastic_collisions_are_balanced(void **unused)
     }
 }
 
-static unsigned turned(unsigned m) { return (m << 1 | m >> 5) & 0x3f; }
-
-static unsigned mirrored(unsigned m)
-{
-    unsigned out = 0;
-    for (int d = 0; d < LGA_DIRECTIONS; d++) if (m >> d & 1) out |= 1u << ((6 - d) % 6);
-    return out;
-}
-
 static int weight_of(int column, unsigned m, int r, unsigned to, int rest)
 {
-    const struct lga_case *entry = &table.cases[column][m][r];
-    int sum = entry->count == 0 && to == m && rest == r ? LGA_WEIGHT : 0;
-    for (int k = 0; k < entry->count; k++) {
-        if (entry->outcome[k].moving == to && entry->outcome[k].rest == rest) {
-            sum += entry->outcome[k].weight;
-        }
-    }
-    return sum;
+    return gas_weight(&table.cases[column][m][r], m, r, to, rest);
 }
 
 static void test_collisions_have_the_symmetry_of_the_hexagon(void **unused)
@@ -90,8 +74,8 @@ static void test_collisions_have_the_symmetry_of_the_hexagon(void **unused)
                 for (unsigned to = 0; to < LGA_STATES; to++) {
                     for (int rest = 0; rest <= LGA_ROOM; rest++) {
                         const int w = weight_of(column, m, r, to, rest);
-                        CHECK(w == weight_of(column, turned(m), r, turned(to), rest));
-                        CHECK(w == weight_of(column, mirrored(m), r, mirrored(to), rest));
+                        CHECK(w == weight_of(column, gas_turned(m), r, gas_turned(to), rest));
+                        CHECK(w == weight_of(column, gas_mirrored(m), r, gas_mirrored(to), rest));
                     }
                 }
             }

@@ -28,7 +28,7 @@ struct sweep {
     const struct sweep_request *request;
     char     self[FILE_PATH_MAX];       /* this program */
     uint32_t count;                     /* points of the whole plan */
-    uint32_t *todo, todo_count;
+    uint32_t *due, due_count;
     uint32_t parallel;
     struct child *children;
     struct ranks ranks;
@@ -86,19 +86,19 @@ static bool settle_plan(const struct sweep *sweep, struct error *error)
 static bool choose_points(struct sweep *sweep, struct error *error)
 {
     const struct sweep_request *request = sweep->request;
-    sweep->todo = calloc((size_t)sweep->count + 1, sizeof *sweep->todo);
-    if (!sweep->todo) return error_set(error, "not enough memory for a study");
+    sweep->due = calloc((size_t)sweep->count + 1, sizeof *sweep->due);
+    if (!sweep->due) return error_set(error, "not enough memory for a study");
     for (uint32_t point = request->shard; point < sweep->count; point += request->shards) {
         char path[FILE_PATH_MAX];
         if (!request->force && recall_done(results_point(path, request->directory, point))) {
             sweep->status.done++;
         } else {
-            sweep->todo[sweep->todo_count++] = point;
+            sweep->due[sweep->due_count++] = point;
         }
     }
-    sweep->status.all = sweep->status.done + sweep->todo_count;
-    sweep->ranks.points = sweep->todo;
-    sweep->ranks.count = sweep->todo_count;
+    sweep->status.all = sweep->status.done + sweep->due_count;
+    sweep->ranks.points = sweep->due;
+    sweep->ranks.count = sweep->due_count;
     return true;
 }
 
@@ -270,7 +270,7 @@ bool sweep_run(const struct sweep_request *request, struct sweep_status *status,
     }
     ranks_end(&sweep.ranks);
     free(sweep.children);
-    free(sweep.todo);
+    free(sweep.due);
     *status = sweep.status;
     if (done && stopped(&sweep)) {
         return error_set_code(error, (enum exit_code)(128 + *request->signal), "stopped by a "
