@@ -152,7 +152,7 @@ static bool save(const struct cost_table *table, const char *directory, struct e
     return done;
 }
 
-/* "hard/cradle", "/tmp/mine.cfg" -> "cradle-cost", "mine-cost": beside where we are. */
+/* "hard/cradle", "scenes/mine.cfg" -> "cradle-cost", "mine-cost": beside where we are. */
 static void choose_directory(char directory[FILE_PATH_MAX], const char *scene)
 {
     const char *slash = strrchr(scene, '/'), *base = slash ? slash + 1 : scene;

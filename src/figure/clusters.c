@@ -40,6 +40,14 @@ static double mean_factor(const struct spectrum *spectrum, uint32_t low, uint32_
     return sum / modes;
 }
 
+/* S(k) at time t; the caller frees the spectrum. */
+static bool factor_at(struct lab *lab, double t, struct spectrum *spectrum, struct error *error)
+{
+    return lab_go(lab, t, error)
+        && spectrum_structure_factor(&lab->footage.grains, lab->setup.scene->box, 1, spectrum,
+                                     error);
+}
+
 /* One chart, one curve a time; `growth` is the mean S of long waves at the first and last. */
 static bool factor_chart(struct figure_job *job, enum gas_kind kind, const double *times,
                          uint32_t count, double growth[2], struct error *error)
@@ -55,9 +63,7 @@ static bool factor_chart(struct figure_job *job, enum gas_kind kind, const doubl
     bool done = open_gas(&lab, job, &gas, times[count - 1], error);
     for (uint32_t k = 0; done && k < count; k++) {
         struct spectrum spectrum;
-        done = lab_go(&lab, gas.start + times[k] * gas.unit, error)
-            && spectrum_structure_factor(&lab.footage.grains, lab.setup.scene->box, 1, &spectrum,
-                                         error);
+        done = factor_at(&lab, gas.start + times[k] * gas.unit, &spectrum, error);
         if (!done) break;
         chart_curve(&chart, CHART_LINES, "t = %.3g t0", times[k]);
         for (uint32_t s = 1; s < spectrum.shells; s++) {
@@ -422,9 +428,7 @@ bool clusters_snapshots(struct figure_job *job, struct error *error)
     bool done = lab_open(&lab, job, &wish, error);
     for (uint32_t k = 0; done && k < count; k++) {
         struct spectrum spectrum;
-        done = lab_go(&lab, gas.start + times[k] * gas.unit, error)
-            && spectrum_structure_factor(&lab.footage.grains, lab.setup.scene->box, 1, &spectrum,
-                                         error);
+        done = factor_at(&lab, gas.start + times[k] * gas.unit, &spectrum, error);
         if (!done) break;
         long_waves[k] = mean_factor(&spectrum, 1, 6);
         spectrum_free(&spectrum);
