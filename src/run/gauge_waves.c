@@ -72,8 +72,8 @@ bool gauge_waves_space_time(struct gauge_job *job, struct chart *chart, struct e
                         waves.density[(size_t)k * waves.slabs + s] / mean);
         }
     }
-    snprintf(job->note, sizeof job->note, "contrast of the density, rms over mean: %.3f in %u slabs",
-             waves_contrast(&waves, waves.count / 4), waves.slabs);
+    snprintf(job->note, sizeof job->note, "contrast of the density, rms over mean: %.3f in %u "
+             "slabs", waves_contrast(&waves, waves.count / 4), waves.slabs);
     waves_free(&waves);
     return true;
 }
@@ -99,8 +99,8 @@ bool gauge_waves_spectrum(struct gauge_job *job, struct chart *chart, struct err
                 chart_point(chart, f, exp(line.offset + line.slope * log(f)));
             }
         }
-        snprintf(job->note, sizeof job->note, "exponent %.2f +- %.2f from f = %.3g to %.3g; contrast "
-                 "%.3f", line.slope, line.slope_error, from, to,
+        snprintf(job->note, sizeof job->note, "exponent %.2f +- %.2f from f = %.3g to %.3g; "
+                 "contrast %.3f", line.slope, line.slope_error, from, to,
                  waves_contrast(&waves, waves.count / 4));
     }
     free(power);
