@@ -72,9 +72,13 @@ static bool write_start(struct session *session, struct error *error)
     folder_path(path, session->directory, "start.cfg");
     if (!file_save(path, text, strlen(text), error)) return false;
     if (simulation_count(&session->sim).time == 0) return true;
-    const struct archive *archive = &session->keeper.states[0].archive;
-    return file_save(folder_path(path, session->directory, "start.checkpoint"), archive->bytes,
-                     archive->size, error);
+    struct archive archive;
+    archive_begin_save(&archive);
+    const bool done = simulation_save(&session->sim, &archive, error)
+        && file_save(folder_path(path, session->directory, "start.checkpoint"), archive.bytes,
+                     archive.size, error);
+    archive_end(&archive);
+    return done;
 }
 
 static bool write_scene(struct session *session, const char *status, struct error *error)
@@ -111,7 +115,8 @@ static bool open_folder(struct session *session, const struct session_request *r
     }
     return folder_claim(session->directory, request->force, error)
         && write_start(session, error) && write_scene(session, "live", error)
-        && journal_begin(session, error);
+        && journal_begin(session, error)
+        && logging_open(&session->logging, session->directory, &session->sim, error);
 }
 
 bool session_open(struct session *session, const struct session_request *request,
@@ -131,8 +136,9 @@ bool session_open(struct session *session, const struct session_request *request
         && timeline_copy(&session->timeline, &session->origin, error)
         && simulation_create(&session->sim, session->base.model, scene, error)
         && take_start(session, request, error)
-        && keeper_open(&session->keeper, &session->sim, scene->until / kept_states, error)
-        && open_folder(session, request, error);
+        && open_folder(session, request, error)
+        && keeper_open(&session->keeper, &session->sim, &session->logging,
+                       scene->until / kept_states, error);
 }
 
 bool session_close(struct session *session, struct error *error)
@@ -144,6 +150,7 @@ bool session_close(struct session *session, struct error *error)
     sight_close(session);
     forget_before(session);
     keeper_close(&session->keeper);
+    logging_close(&session->logging);
     if (session->sim.state) simulation_destroy(&session->sim);
     setup_free(&session->now);
     setup_free(&session->look_setup);
@@ -196,9 +203,14 @@ static void adapt(struct session *session, double took, uint64_t steps)
     }
 }
 
-/* States to keep and frames of a movie that are due at `time`, which has been reached. */
+/* Rows of the log, states to keep and frames of a movie that are due at `time`, which has been
+ * reached; the row first, so that a state knows it. */
 static bool serve(struct session *session, double time, struct error *error)
 {
+    if (logging_due(&session->logging) <= time
+        && !logging_row(&session->logging, &session->sim, session->wall, error)) {
+        return false;
+    }
     if (keeper_due(&session->keeper) <= time
         && !keeper_keep(&session->keeper, &session->sim, error)) {
         return false;
@@ -209,7 +221,8 @@ static bool serve(struct session *session, double time, struct error *error)
 /* One piece towards t; *arrived says whether it is reached. */
 static bool advance(struct session *session, double t, bool *arrived, struct error *error)
 {
-    const double due = fmin(t, fmin(keeper_due(&session->keeper), sight_movie_due(session)));
+    const double kept = fmin(keeper_due(&session->keeper), logging_due(&session->logging));
+    const double due = fmin(t, fmin(kept, sight_movie_due(session)));
     const uint64_t left = session->steps_left;
     const uint64_t budget = left > 0 && left < session->budget ? left : session->budget;
     const uint64_t before = simulation_count(&session->sim).steps;
@@ -334,8 +347,12 @@ bool session_restart(struct session *session, const struct timeline *timeline,
         setup_free(&setup);
         return false;
     }
-    if (!keeper_open(&keeper, &fresh, setup.scene->until / kept_states, error)) {
+    logging_close(&session->logging);
+    if (!logging_open(&session->logging, session->directory, &fresh, error)
+        || !keeper_open(&keeper, &fresh, &session->logging, setup.scene->until / kept_states,
+                        error)) {
         keeper_close(&keeper);
+        logging_close(&session->logging);
         simulation_destroy(&fresh);
         setup_free(&setup);
         return false;
