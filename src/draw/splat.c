@@ -51,14 +51,18 @@ enum { RIM = 1, SHADE = 2 };    /* what a loop is compiled for */
 #define RIM_MIN 0.8f
 #define RIM_MAX 2.5f
 
-static float bounded(float value, float low, float high)
+/* What the loops below call is forced into them: a call from their AVX2 forms to code without it
+ * would cost the processor's change between the two. */
+FORCE_INLINE float bounded(float value, float low, float high)
 {
     return value < low ? low : value > high ? high : value;
 }
 
+FORCE_INLINE float square_half(float radius) { return 0.8862269f * radius; }
+
 float splat_reach(float radius)
 {
-    return radius < RADIUS_SQUARE ? 0.8862269f * radius : radius + 0.5f;
+    return radius < RADIUS_SQUARE ? square_half(radius) : radius + 0.5f;
 }
 
 bool splat_touches(const struct splat *splat, const struct splat_area *area)
@@ -69,25 +73,25 @@ bool splat_touches(const struct splat *splat, const struct splat_area *area)
 }
 
 /* The pixels low..high-1 that an extent touches within first..last-1. */
-static void extent_pixels(float center, float reach, uint32_t first, uint32_t last,
-                          int32_t *low, int32_t *high)
+FORCE_INLINE void extent_pixels(float center, float reach, uint32_t first, uint32_t last,
+                                int32_t *low, int32_t *high)
 {
     const float from = floorf(center - reach), to = ceilf(center + reach);
     *low = from > (float)first ? (int32_t)from : (int32_t)first;
     *high = to < (float)last ? (int32_t)to : (int32_t)last;
 }
 
-static float overlap(float low, float high, int32_t cell)
+FORCE_INLINE float overlap(float low, float high, int32_t cell)
 {
     const float from = low > (float)cell ? low : (float)cell;
     const float to = high < (float)(cell + 1) ? high : (float)(cell + 1);
     return to - from;
 }
 
-static void square_add(float *sums, uint32_t width, const struct splat_area *area,
-                       const struct splat *splat, pixel color)
+FORCE_INLINE void square_add(float *sums, uint32_t width, const struct splat_area *area,
+                             const struct splat *splat, pixel color)
 {
-    const float half = splat_reach(splat->radius);
+    const float half = square_half(splat->radius);
     int32_t x0, x1, y0, y1;
     extent_pixels(splat->x, half, area->x0, area->x1, &x0, &x1);
     extent_pixels(splat->y, half, area->y0, area->y1, &y0, &y1);
@@ -107,7 +111,7 @@ struct disc {
     float shade, rim, rim_from; /* strengths, and where the rim begins */
 };
 
-static struct disc disc_prepare(const struct splat *splat, struct splat_style style)
+FORCE_INLINE struct disc disc_prepare(const struct splat *splat, struct splat_style style)
 {
     const float r = splat->radius, edge = sqrtf(r * r - EDGE_AREA);
     return (struct disc){
@@ -180,7 +184,8 @@ FORCE_INLINE void disc_add(float *sums, uint32_t width, const struct splat_area 
         pixel *row = (pixel *)sums + (size_t)(y0 - (int32_t)area->y0) * width + x0;
         for (int32_t y = y0; y < y1; y++, row += width) {
             disc_piece(&disc, (float)x0 + 0.5f, (float)y + 0.5f - disc.y, a, c, w, effects);
-            piece_add(row, color, a, c, w, PIECE, effects);
+            if (x1 - x0 > PIECE / 2) piece_add(row, color, a, c, w, PIECE, effects);
+            else piece_add(row, color, a, c, w, PIECE / 2, effects);
         }
         return;
     }
