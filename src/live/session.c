@@ -91,11 +91,18 @@ static bool write_scene(struct session *session, const char *status, struct erro
         && manifest_save(&manifest, session->directory, error);
 }
 
+static void mark_present(struct session *session)
+{
+    const struct counters now = simulation_count(&session->sim);
+    session->reached = now.time;
+    session->steps = now.steps;
+}
+
 static bool take_start(struct session *session, const struct session_request *request,
                        struct error *error)
 {
     if (!load_start(session, request, error)) return false;
-    session->reached = simulation_count(&session->sim).time;
+    mark_present(session);
     return true;
 }
 
@@ -225,15 +232,16 @@ static bool advance(struct session *session, double t, bool *arrived, struct err
     const double due = fmin(t, fmin(kept, sight_movie_due(session)));
     const uint64_t left = session->steps_left;
     const uint64_t budget = left > 0 && left < session->budget ? left : session->budget;
-    const uint64_t before = simulation_count(&session->sim).steps;
     const double start = clock_wall();
     const enum advance outcome = simulation_advance(&session->sim, due, budget, error);
-    const uint64_t steps = simulation_count(&session->sim).steps - before;
+    const struct counters now = simulation_count(&session->sim);
+    const uint64_t steps = now.steps - session->steps;
+    session->steps = now.steps;
     adapt(session, clock_wall() - start, steps);
     session->version++;
     if (steps > 0) forget_before(session);
     session->between = outcome != ADVANCE_REACHED;
-    session->reached = session->between ? simulation_count(&session->sim).time : due;
+    session->reached = session->between ? now.time : due;
     *arrived = outcome == ADVANCE_REACHED && due == t;
     if (outcome == ADVANCE_BROKEN) return false;
     if (left > 0) {
@@ -246,8 +254,7 @@ static bool advance(struct session *session, double t, bool *arrived, struct err
 bool session_piece(struct session *session, double t_limit, struct error *error)
 {
     /* Steps are taken without a time in mind; the limit only has to be out of their reach. */
-    const double now = simulation_count(&session->sim).time;
-    const double far = now + 1e3 * session_scene(session)->until;
+    const double far = session->reached + 1e3 * session_scene(session)->until;
     const bool by_steps = session->steps_left > 0;
     const double end = fmin(by_steps ? INFINITY : session->go_until, far);
     bool arrived = false;
@@ -319,7 +326,7 @@ bool session_adopt(struct session *session, struct setup *setup, uint32_t phase,
     if (state) {
         simulation_destroy(&session->sim);
         session->sim = fresh;
-        session->reached = simulation_count(&fresh).time;
+        mark_present(session);
         forget_before(session);
     } else {
         done = simulation_enter(&session->sim, setup->scene, phase, &session->before, error);
@@ -360,7 +367,7 @@ bool session_restart(struct session *session, const struct timeline *timeline,
     pthread_mutex_lock(&session->scene_lock);
     simulation_destroy(&session->sim);
     session->sim = fresh;
-    session->reached = 0;
+    mark_present(session);
     keeper_close(&session->keeper);
     session->keeper = keeper;
     forget_before(session);

@@ -72,6 +72,7 @@ struct session {
     double   reached;           /* the time that the last piece was to reach, and did (a model
                                  * with coarse ticks may stand before it) ... */
     bool     between;           /* ... or the model's own: it ended by its budget, between times */
+    uint64_t steps;             /* likewise: counting is a sum over all grains, so once a piece */
     double   wall;              /* seconds spent on advancing */
     uint64_t version;           /* counts whatever changes the picture */
     uint64_t expected, disappointed;    /* `expect` so far, and how many did not hold */

@@ -58,8 +58,9 @@ static bool try_phase(struct session *session, struct timeline *copy,
 {
     /* Coarse ticks may stand beyond the time that was to be reached; what is due in between belongs
      * to the phase before, as in a run. */
-    const double time = now_of(session).time;
+    const double time = now_of(session).time, reached = session->reached;
     if (!session_reach(session, time, error)) return false;
+    session->reached = reached;
     struct timeline_entry *entry = timeline_at(copy, time, error);
     if (!entry) return false;
     for (uint32_t k = 0; k < sets->count; k++) {
