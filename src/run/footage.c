@@ -24,8 +24,8 @@ bool footage_open(struct footage *footage, const struct setup *setup, const char
     if (footage->from_dumps) {
         if (!dumps_open(&footage->dumps, path, error)) return false;
         return !(contacts && footage->dumps.trajectory)
-            || error_set_code(error, EXIT_USAGE, "%s: trajectory.h5 knows no contacts, so no forces "
-                              "can be drawn; run it again with -s output.dump=true "
+            || error_set_code(error, EXIT_USAGE, "%s: trajectory.h5 knows no contacts, so no "
+                              "forces can be drawn; run it again with -s output.dump=true "
                               "-s output.contacts=true", path);
     }
     return simulation_create(&footage->sim, setup->model, setup->scene, error);

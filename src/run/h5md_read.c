@@ -98,8 +98,9 @@ static bool list_frames(struct h5md_read *reader, struct dump_index *index, stru
     *index = (struct dump_index){.entries = malloc((count + 1) * sizeof *index->entries)};
     bool done = (times && steps && index->entries)
              || error_set(error, "%s: not enough memory", reader->path);
+    const hid_t whole = H5T_NATIVE_UINT64;
     done = done && ((read_rows(reader, "position", "time", 1, H5T_NATIVE_DOUBLE, 0, count, times)
-                     && read_rows(reader, "position", "step", 1, H5T_NATIVE_UINT64, 0, count, steps))
+                     && read_rows(reader, "position", "step", 1, whole, 0, count, steps))
                     || refuse(reader, error));
     index->capacity = (uint32_t)count + 1;
     for (size_t k = 0; done && k < count; k++) {
@@ -179,7 +180,8 @@ bool h5md_read_frame(struct h5md_read *reader, uint32_t frame, struct grains *gr
     uint32_t count = 0;
     grains_free(grains);
     /* One more than needed, so that an empty frame has arrays too. */
-    if (!count_grains(reader, frame, &count, error) || !grains_create(grains, count + 1, 0, error)) {
+    if (!count_grains(reader, frame, &count, error)
+        || !grains_create(grains, count + 1, 0, error)) {
         return false;
     }
     bool done = read_pairs(reader, "position", frame, count, grains->x, grains->y)
