@@ -140,7 +140,7 @@ struct lga {
     struct lga_dice  dice;
     enum lga_simd    simd;
     double   fill;              /* share of the slots with movers at the start */
-    bool     plain;             /* no fast form, though there is one: for comparison */
+    bool     plain;             /* not the fast form: for comparison */
     bool     sinks;             /* some node may be a sink */
     bool     crowded;           /* gmlg: some node may hold more than gravity lets in */
     uint32_t words;             /* of 64 nodes in a row: column x is bit x / words of x % words */
@@ -150,7 +150,7 @@ struct lga {
     uint8_t *moving, *rest;     /* the state of the plain form */
     uint8_t *load, *admitted, *hit;     /* within a tick: grains, arrivals let in, had movers */
     uint8_t *moving_next, *rest_next;
-    uint8_t *heap;              /* the node belongs to the heap; NULL: there is none */
+    uint8_t *heap;              /* the node belongs to the heap; NULL: there is none, or `bits` */
     uint32_t (*beside)[LGA_DIRECTIONS]; /* the six neighbours */
     uint32_t *queue;            /* search for room: nodes in the order in which they are tried */
     uint32_t queue_length;
@@ -240,7 +240,6 @@ char lga_look_ground(const void *state, double x, double y);
 
 /* lga_step.c: one tick by any rules, and the streaming that they share.  Allocation takes an empty
  * `lga` whose lattice, rule and sites are set. */
-bool lga_step_is_fast(const struct lga_rule *rule);     /* is there a fast form? */
 bool lga_step_allocate(struct lga *lga);
 void lga_step(struct lga *lga);
 double lga_step_time(const struct lga *lga);
@@ -254,13 +253,16 @@ bool lga_plain_allocate(struct lga *lga);
 void lga_plain_roll(struct lga *lga);
 bool lga_plain_die(const struct lga *lga, enum lga_die_kind kind, uint32_t site);
 
+/* 0, 1 or 2, alike; one of a set of directions, and of a node's movers, all with equal chance. */
+struct lga_pick { bool third, fifth, coin, second; };
+int lga_plain_third(bool third, bool coin);
+int lga_plain_pick(unsigned set, struct lga_pick dice);
+int lga_plain_mover(const struct lga *lga, uint32_t site);
+
 /* lga_gmlg.c, lga_sand.c: what happens before streaming, in the plain form. */
 void lga_gmlg_collide(struct lga *lga);
 bool lga_sand_allocate(struct lga *lga);
 void lga_sand_collide(struct lga *lga);
 void lga_sand_settle(struct lga *lga);  /* and after it: contacts with the heap */
-
-/* Which of the movers bends down, *from, and where to; `left` is the outcome of the die. */
-int lga_sand_bend(const struct lga *lga, uint32_t site, unsigned moving, bool left, int *from);
 
 #endif

@@ -42,12 +42,8 @@ static size_t band_words(const struct lga_bits *bits)
 bool lga_bits_gmlg_allocate(struct lga *lga)
 {
     struct lga_bits *bits = lga->bits;
-    if (!arena_array(&lga->arena, &bits->rings, bits->bands * band_words(bits))
-        || !arena_array(&lga->arena, &bits->real, bits->words)) return false;
-    for (uint32_t x = 0; x < lga->lattice.columns; x++) {
-        bits->real[x % bits->words] |= 1ull << x / bits->words;
-    }
-    return true;
+    return arena_array(&lga->arena, &bits->rings, bits->bands * band_words(bits))
+        && lga_bits_allocate_real(lga);
 }
 
 static struct band band_of(const struct lga *lga, const struct lga_kernel *kernel, uint32_t number)

@@ -26,13 +26,6 @@ INLINE void N(subtract_bit)(vec number[3], vec bit)
 
 INLINE vec N(is_zero)(const vec number[3]) { return ~(number[0] | number[1] | number[2]); }
 
-INLINE bool N(any)(vec bits)
-{
-    uint64_t sum = 0;
-    for (int k = 0; k < KERNEL_WIDTH; k++) sum |= bits[k];
-    return sum != 0;
-}
-
 /* How many of the planes are set. */
 INLINE uint64_t N(count_six)(const vec planes[6])
 {

@@ -150,11 +150,6 @@ static bool allocate_plain(struct lga *lga)
     return lga_plain_allocate(lga) && (gmlg || lga_sand_allocate(lga));
 }
 
-bool lga_step_is_fast(const struct lga_rule *rule)
-{
-    return rule->method != LGA_SANDPILE || !rule->heap;
-}
-
 bool lga_step_allocate(struct lga *lga)
 {
     struct arena *arena = &lga->arena;
@@ -165,6 +160,5 @@ bool lga_step_allocate(struct lga *lga)
     if (!arena_array(arena, &lga->table, 1) || !arena_array(arena, &lga->queue, lga->queue_length)
         || !arena_array(arena, &lga->seen, lga->sites / 64 + 1)) return false;
     lga_table_fill(lga->table);
-    const bool fast = lga_step_is_fast(&lga->rule) && !lga->plain;
-    return fast ? lga_bits_allocate(lga) : allocate_plain(lga);
+    return lga->plain ? allocate_plain(lga) : lga_bits_allocate(lga);
 }
