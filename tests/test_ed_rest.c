@@ -155,7 +155,7 @@ static void test_a_late_clock_moves_no_grain_otherwise(void **unused)
     for (int turn = 1; turn <= 40; turn++) {
         struct grains g[2];
         for (int k = 0; k < 2; k++) {
-            scenes_advance(runs[k], 2 * turn + k * late);
+            scenes_advance(runs[k], 5 * turn + k * late);
             g[k] = scenes_look(runs[k]);
         }
         CHECK(simulation_count(&runs[0]->sim).steps == simulation_count(&runs[1]->sim).steps);
