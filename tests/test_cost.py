@@ -81,7 +81,12 @@ class Cost(unittest.TestCase):
             manifest = json.load(text)
         self.assertEqual(manifest["model"], fastest.split()[0])
         self.assertIn("friction", manifest["effects_left_out"])
-        self.assertGreater(manifest["seconds"]["per_simulated_time"], 0)
+        parts = manifest["seconds"]
+        for part in "core", "measure", "draw", "encode", "files", "total":
+            self.assertGreaterEqual(parts[part]["per_simulated_time"], 0)
+            self.assertGreaterEqual(parts[part]["per_step"], 0)
+        self.assertGreater(parts["core"]["per_step"], 0)
+        self.assertAlmostEqual(parts["core"]["per_simulated_time"] * 4, parts["core"]["wall"], 3)
 
     def test_run_asks_for_a_measurement_that_is_not_there(self):
         self.write()

@@ -51,8 +51,8 @@ static double inner_energy(const struct scenes_run *run)
          - (c.momentum_x * c.momentum_x + c.momentum_y * c.momentum_y) / (2 * mass);
 }
 
-/* What share of its energy a rough gas, T = 1, keeps from t = 20 to 100 while it falls under g.  The
- * cut-off is longer than the run: every contact but each grain's first is within it. */
+/* What share of its energy a rough gas, T = 1, keeps from t = 20 to 100 while it falls under g.
+ * The cut-off is longer than the run: every contact but each grain's first is within it. */
 static double kept_in_the_cut_off(double g)
 {
     char text[600];

@@ -108,6 +108,13 @@ static void write_script(FILE *out, const struct chart *chart, const char *stem,
     if (chart->equal) fputs("set size ratio -1\n", out);
     write_range(out, "x", chart->x_range);
     write_range(out, "y", chart->y_range);
+    for (uint32_t k = 0; k < chart->label_count; k++) {
+        const struct chart_label *label = &chart->labels[k];
+        fputs("set label ", out);
+        quote(out, label->text);
+        fprintf(out, " at %.9g,%.9g offset char 0.6,0.4 font ',8' noenhanced\n", label->x,
+                label->y);
+    }
     for (int f = 0; f < PLOT_FORMAT_COUNT; f++) {
         if (!(formats >> f & 1)) continue;
         fprintf(out, "set terminal %s\nset output '%s.%s'\nplot \\\n", formats_list[f].terminal,
