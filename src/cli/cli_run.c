@@ -121,7 +121,7 @@ static int simulate(const struct options *options, const struct setup *setup,
     const bool done = run_scene(&request, &result, &error);
     progress_end(&progress);
     if (!done) return opening_fail(&error);
-    if (progress.how != PROGRESS_NONE) {
+    if (progress.how != PROGRESS_NONE && !result.was_done) {
         tell_result(&result, directory);
         tell_costs(&result, setup->scene);
     }

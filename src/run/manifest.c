@@ -20,16 +20,15 @@ static json_t *hash_word(uint64_t hash)
     return json_sprintf("%016" PRIx64, hash);
 }
 
-/* A name that is not UTF-8 (a file's may be any bytes) gets a question mark for each strange
- * byte. */
-static json_t *words(const char *text)
+json_t *manifest_text(const char *text)
 {
     json_t *whole = json_string(text);
     if (whole) return whole;
-    char plain[KEY_TEXT_MAX];
-    snprintf(plain, sizeof plain, "%s", text);
-    for (char *at = plain; *at; at++) if ((unsigned char)*at > 126) *at = '?';
-    return json_string(plain);
+    char *plain = strdup(text);
+    for (char *at = plain; at && *at; at++) if ((unsigned char)*at > 126) *at = '?';
+    json_t *bent = plain ? json_string(plain) : NULL;
+    free(plain);
+    return bent;
 }
 
 static json_t *number(double value)
@@ -90,7 +89,8 @@ static json_t *describe(const struct manifest *manifest)
     const time_t now = time(NULL);
     strftime(when, sizeof when, "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
     json_t *root = json_pack("{s:s, s:o, s:o, s:s, s:I, s:s, s:o, s:o}",
-        "status", manifest->status, "scene", words(scene->name), "title", words(scene->title),
+        "status", manifest->status, "scene", manifest_text(scene->name),
+        "title", manifest_text(scene->title),
         "model", manifest->model->name, "seed", (json_int_t)scene->seed,
         "written", when, "scene_hash", hash_word(manifest->scene_hash),
         "versions", build_versions());

@@ -367,6 +367,38 @@ static bool carry_out(struct run *run, struct run_result *result)
     return done;
 }
 
+/* Do two resolved scenes that are otherwise the same end at the same time? */
+static bool same_end(const char *one, const char *other)
+{
+    static const char line[] = "\nuntil ";
+    const char *a = strstr(one, line), *b = strstr(other, line);
+    return a && b && strcspn(a + 1, "\n") == strcspn(b + 1, "\n")
+        && strncmp(a, b, 1 + strcspn(a + 1, "\n")) == 0;
+}
+
+/* A run that is done and keeps no checkpoints: all of it is there, but it cannot be made longer. */
+static bool is_there(struct run *run, bool *there)
+{
+    char path[FILE_PATH_MAX];
+    *there = false;
+    if (!run->resumes || checkpoint_exists(folder_path(path, run->directory, "checkpoint"))) {
+        return true;
+    }
+    char *text = load_text(folder_path(path, run->directory, "scene.cfg"), run->error);
+    *there = text && same_end(text, run->scene_text);
+    folder_remove(run->directory, "scene.cfg.new");
+    if (text && !*there) {
+        error_set_code(run->error, EXIT_USAGE, "%s: this run is done and kept no checkpoint, so it "
+                       "cannot be made longer; run it anew with --force, and with "
+                       "-s output.checkpoint=INTERVAL", run->directory);
+    } else if (text && run->request->warn) {
+        run->request->warn(run->request->context, "this run is done already; nothing was left to "
+                                                  "do");
+    }
+    free(text);
+    return *there;
+}
+
 /* Opens the directory.  A run that died before its first checkpoint is begun anew. */
 static bool claim(struct run *run)
 {
@@ -395,9 +427,10 @@ bool run_scene(const struct run_request *request, struct run_result *result,
     *result = (struct run_result){0};
     snprintf(run->directory, sizeof run->directory, "%s", request->directory);
     parts_begin(&run->parts, PART_core);
-    const bool done = claim(run) && settle_scene(run)
-        && simulation_create(&run->sim, request->model, request->scene, run->error)
-        && carry_out(run, result);
+    const bool done = claim(run) && settle_scene(run) && is_there(run, &result->was_done)
+        && (result->was_done
+            || (simulation_create(&run->sim, request->model, request->scene, run->error)
+                && carry_out(run, result)));
     writer_close(&run->writer);
     simulation_destroy(&run->sim);
     free(run->scene_text);

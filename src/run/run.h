@@ -39,6 +39,7 @@ struct run_request {
 };
 
 struct run_result {
+    bool was_done;              /* resumed, but done before: nothing below is known */
     struct counters counters;   /* at the end */
     struct parts parts;
     double   cpu_encode, wall;

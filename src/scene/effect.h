@@ -25,6 +25,7 @@
     X(GATES,          "gates",           "walls that open or close at a time")                  \
     X(OBSTACLE,       "obstacle",        "the force on a body is summed up")                    \
     X(INFLOW,         "inflow",          "grains enter while it runs")                          \
+    X(RISING,         "rising source",   "a source keeps its height above the grains at rest")  \
     X(OUTFLOW,        "outflow",         "grains leave through open borders and sinks")         \
     X(SCREEN,         "screen",          "grains that cross a screen are recorded and removed") \
     X(COLLISION_RATE, "collision rate",  "contacts begun are counted for each grain")           \

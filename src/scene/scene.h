@@ -65,6 +65,7 @@ struct source {
     char   grains[KEY_TEXT_MAX];
     int    kind;                /* enum source_kind */
     double position[2];         /* point: where; stream: middle of the column at its release */
+    double above;               /* point: height above the grains at rest; 0: it does not rise */
     double width;               /* point: spread along x; stream: b, the height of a column */
     double velocity[2];
     double rate;                /* point: grains per time */

@@ -100,6 +100,8 @@ static const struct key source_keys[] = {
     CHOICE(source, kind, "point", "point|stream",
            "grains that fall one by one, or columns of grains"),
     PLACE(source, position, NULL, "where; of a stream: the middle of a new column"),
+    REAL(source, above, "0", 0, FAR, "length",
+         "point: it rises with a heap, so high above its highest grain at rest; 0: it stays"),
     REAL(source, width, "0", 0, FAR, "length", "spread along x; of a stream: the column's height"),
     VECTOR(source, velocity, "(0, 0)", -FAR, FAR, "speed", "with which they enter"),
     REAL(source, rate, "0", 0, FAR, "1/time", "point: grains per time"),

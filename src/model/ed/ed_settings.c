@@ -17,11 +17,11 @@ static const struct key keys[] = {
     {"t_c", KEY_REAL, AT(t_c), "nan", 0, NAN, "time", NULL,
      "cut-off time: a grain whose last contact is younger collides elastically; 0: plain ED, which "
      "stops where inelastic collapse begins; absent: 1e-2 sqrt(d/g), or 1e-5 d/v without gravity"},
-    {"elastic", KEY_CHOICE, AT(elastic), "normal", NAN, NAN, NULL, "normal|whole",
+    {"elastic", KEY_CHOICE, AT(elastic), "normal", NAN, NAN, NULL, "normal|rest",
      "what a contact within t_c keeps: normal, the normal speed, while friction goes on losing "
-     "energy (cooperative, eq. 7), so that rough beds at rest collide ever faster; whole, the "
-     "energy: what friction takes of the slip is given back along the normal, so that they rest at "
-     "about one contact in t_c"},
+     "energy (cooperative, eq. 7), so that rough beds at rest collide ever faster; rest, an "
+     "agitation as well: of what friction takes, as much is given back along the normal as makes a "
+     "speed of 10 g t_c, which costs beds far fewer events and lets them creep at less than that"},
     {"restitution", KEY_REAL, AT(restitution), "nan", 0, 1, "1", NULL,
      "of grains that tell only a stiffness and a damping, as soft discs do; absent: derived from "
      "them"},
