@@ -8,10 +8,10 @@
 #include "bench/effects.h"
 
 #include "base/clock.h"
+#include "bench/heap.h"
 #include "bench/stripped.h"
 #include "model/simulation.h"
 
-#include <malloc.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -132,12 +132,6 @@ struct form {
     double bytes, best;
     uint64_t budget;
 };
-
-static double heap_bytes(void)
-{
-    const struct mallinfo2 now = mallinfo2();
-    return (double)now.uordblks + (double)now.hblkhd;
-}
 
 static bool form_open(struct form *form, const struct setup_request *request, struct error *error)
 {
