@@ -48,7 +48,7 @@ static struct ed_pair mixed(const struct species *a, const struct species *b,
     return (struct ed_pair){r, sqrt(a->friction * b->friction), settings->tangential};
 }
 
-/* Greatest speed, in g t_c, that friction gives back under `elastic = "rest"`.  A grain that carries
+/* Greatest speed, in g t_c, that friction gives back (`elastic = "rest"`).  A grain that carries
  * N others and is hit with v has N g / v contacts in a unit of time, whatever the law: a bed that
  * hardly stirs costs many events, one that stirs creeps about as fast as it stirs.  With ten, beds
  * up to ten grains deep rest at about one contact in t_c.  More lets sand that flows slip without

@@ -142,8 +142,8 @@ static void warn_of_cut_off(const struct scene *scene, const struct ed_settings 
     const double fall = g > 0 ? sqrt(d / g) : INFINITY;
     if (!(settings->t_c > cut_off_share_max * fall)) return;
     findings_tell(findings, scene, FINDING_WARNING, "ed.t_c", "ed.t_c = %.3g is %.2g of the time "
-        "in which a grain falls through its diameter, so that grains at rest on each other stir and "
-        "heaps creep; use at most %.2g, or delete the line and sandreel chooses",
+        "in which a grain falls through its diameter, so that grains at rest on each other stir "
+        "and heaps creep; use at most %.2g, or delete the line and sandreel chooses",
         settings->t_c, settings->t_c / fall, cut_off_share_max * fall);
 }
 
