@@ -14,6 +14,7 @@ struct bench_lga_case {
     const char *name;
     const char *method;
     const char *rule;           /* further keys of `lga` */
+    double   fill;              /* share of the slots with movers at the start */
     bool     walls, gravity;
     uint32_t side, ticks;       /* nodes along each side; measured */
 };

@@ -8,6 +8,35 @@
 #include "check.h"
 #include "model/lga/lga_bits.h"
 
+/* What the seeds of a measurement gave. */
+struct sample { double sum, squares; int count; };
+
+static inline void sample_add(struct sample *sample, double value)
+{
+    sample->sum += value;
+    sample->squares += value * value;
+    sample->count++;
+}
+
+static inline double sample_mean(const struct sample *sample)
+{
+    return sample->sum / sample->count;
+}
+
+/* Standard error of the mean; of a single seed unknown. */
+static inline double sample_error(const struct sample *sample)
+{
+    const double mean = sample_mean(sample), n = sample->count;
+    return n > 1 ? sqrt(fmax(0, sample->squares / n - mean * mean) / (n - 1)) : NAN;
+}
+
+static inline void sample_tell(const char *where, const char *what, const struct sample *sample,
+                               const char *reference)
+{
+    print_message("    %-28s %-22s %9.4f +- %.4f (%d seeds)  reference %s\n", where, what,
+                  sample_mean(sample), sample_error(sample), sample->count, reference);
+}
+
 /* A torus of fluid nodes, spacing 1 and tick 1, in the fast form if there is one. */
 static inline struct lga *gas(uint32_t columns, uint32_t rows, struct lga_rule rule, uint64_t seed)
 {
@@ -105,6 +134,8 @@ static inline void check_cooling(struct lga_rule rule, bool never_warms, const d
      * changed it: at most sqrt(E0 (1 - ratio)) / E0, from the reference's one seed and our three;
      * at late times like the survivors of a start that itself scatters by 1/sqrt(E0). */
     for (int k = 0; k < 4; k++) {
+        print_message("    E/E0 at t = %-4d %.4f (%d seeds)  reference %.4f\n", times[k], mean[k],
+                      SEEDS, expected[k]);
         const double one = sqrt(fmin(1 - expected[k], expected[k]) / 14746.0) + 1 / 14746.0;
         CHECK_NEAR(mean[k], expected[k], 3 * one * sqrt(1 + 1.0 / SEEDS));
     }

@@ -53,6 +53,7 @@ static struct lga *make(const struct trial *trial, bool plain, enum lga_simd sim
     lga->tick = 1;
     lga->plain = plain;
     lga->sinks = trial->ground == SINKS;
+    lga->rate.window = 7;
     CHECK(lga_step_allocate(lga));
     CHECK(plain == !lga->bits);
     if (simd < lga->simd) lga->simd = simd;
@@ -94,10 +95,20 @@ static uint64_t mass(const struct lga *lga)
     return sum;
 }
 
+/* Does a node belong to the heap? */
+static bool is_heap(const struct lga *lga, uint32_t n)
+{
+    const uint32_t row = n / lga->lattice.columns, x = n % lga->lattice.columns;
+    if (lga->heap) return lga->heap[n];
+    return lga->rule.heap && lga_bits_heap(lga, row)[x % lga->words] >> x / lga->words & 1;
+}
+
 static void check_equal(const struct lga *a, const struct lga *b)
 {
     for (uint32_t n = 0; n < a->sites; n++) {
         const struct lga_node p = lga_node_get(a, n), q = lga_node_get(b, n);
+        CHECK(is_heap(a, n) == is_heap(b, n));
+        CHECK(lga_rate_of(a, n) == lga_rate_of(b, n));
         if (p.moving == q.moving && p.rest == q.rest && p.kind == q.kind) continue;
         fail_msg("%u x %u, tick %d, node %u: %02x %d, not %02x %d", a->lattice.columns,
                  a->lattice.rows, (int)a->ticks, n, q.moving, q.rest, p.moving, p.rest);
@@ -120,6 +131,11 @@ static const struct lga_rule pipe = {.method = LGA_SANDPILE, .gain = 1, .loss = 
     .gravity = true, .fall = 0.5, .strict = true, .smooth = 0.1};
 static const struct lga_rule pile = {.method = LGA_SANDPILE, .gain = 1, .loss = 1,
     .gravity = true, .fall = 0.5, .fly = true};
+
+static const struct lga_rule heaped = {.method = LGA_SANDPILE, .gain = 1, .loss = 0.5,
+    .gravity = true, .fall = 0.5, .fly = true, .heap = true, .smooth = 0.3};
+static const struct lga_rule sticky = {.method = LGA_SANDPILE, .gain = 0.7, .loss = 1,
+    .gravity = true, .fall = 0.8, .fly = true, .strict = true, .heap = true};
 
 static const struct lga_rule thin = {.method = LGA_GMLG, .gain = 1};
 static const struct lga_rule cooling = {.method = LGA_GMLG, .gain = 0.7, .inelastic = 0.6,
@@ -144,6 +160,8 @@ static void test_bits_and_bytes_make_the_same_lattice(void **unused)
         {120, 30, OBSTACLES, certain}, {100, 20, TORUS, cold}, {13, 60, PIPE, pipe},
         {600, 12, BOX, pile}, {512, 12, TORUS, pile}, {90, 40, SINKS, pile}, {90, 40, SINKS, cold},
         {90, 40, OBSTACLES, pile}, {700, 6, OBSTACLES, pipe},
+        {65, 40, BOX, heaped}, {512, 20, BOX, sticky}, {90, 40, OBSTACLES, heaped},
+        {600, 12, OBSTACLES, sticky}, {90, 40, SINKS, heaped}, {100, 20, TORUS, heaped},
         {100, 20, TORUS, thin}, {512, 8, TORUS, cooling}, {2, 2, TORUS, cooling},
         {513, 6, OBSTACLES, cooling}, {2, 2, TORUS, level}, {100, 4, TORUS, upright},
         {65, 30, BOX, level}, {65, 30, BOX, upright}, {65, 30, BOX, stiff},
@@ -164,6 +182,9 @@ static void test_bits_and_bytes_make_the_same_lattice(void **unused)
         }
         CHECK(fast->collisions > 0);
         if (trials[k].ground == SINKS) CHECK(fast->grains_out > 0);
+        uint32_t in_heap = 0;
+        for (uint32_t n = 0; n < fast->sites; n++) in_heap += is_heap(fast, n);
+        CHECK((in_heap > 0) == (trials[k].rule.heap && trials[k].ground != TORUS));
         unmake(plain);
         unmake(fast);
     }
@@ -197,6 +218,7 @@ static void test_every_set_of_instructions_and_number_of_threads_gives_the_same_
     (void)unused;
     check_machines(&(struct trial){600, 120, OBSTACLES, all});
     check_machines(&(struct trial){600, 120, OBSTACLES, pile});
+    check_machines(&(struct trial){600, 120, OBSTACLES, heaped});
     check_machines(&(struct trial){600, 120, OBSTACLES, level});
     check_machines(&(struct trial){600, 120, SINKS, upright});
     check_machines(&(struct trial){600, 120, TORUS, cooling});
@@ -228,6 +250,7 @@ static void test_a_grain_held_by_a_wall_waits(void **unused)
     (void)unused;
     check_held(&(struct trial){100, 10, OBSTACLES, lossy});
     check_held(&(struct trial){100, 10, OBSTACLES, pile});
+    check_held(&(struct trial){100, 10, OBSTACLES, heaped});
     check_held(&(struct trial){100, 10, OBSTACLES, upright});
 }
 
@@ -259,12 +282,36 @@ static void test_dice_fall_as_often_as_they_should(void **unused)
     CHECK(lga_dice_die(1).bits == 0 && lga_dice_die(1).threshold == 1);
 }
 
+static void test_each_collision_is_counted_at_one_node(void **unused)
+{
+    (void)unused;
+    /* Over a window of ten ticks, and what is not over yet counts not. */
+    const struct lga_rule rules[] = {all, pile, level, cooling};
+    for (size_t k = 0; k < sizeof rules / sizeof *rules; k++) {
+        const struct trial trial = {130, 20, TORUS, rules[k]};
+        struct lga *lga = make(&trial, false, LGA_SIMD_AVX512);
+        lga->rate.window = 10;
+        uint64_t before = 0, sum = 0;
+        for (int t = 0; t < 25; t++) {
+            if (t == 10) before = lga->collisions;
+            if (t == 20) sum = lga->collisions - before;
+            lga_step(lga);
+        }
+        double counted = 0;
+        for (uint32_t n = 0; n < lga->sites; n++) counted += 10 * lga_rate_of(lga, n);
+        CHECK(sum > 0);
+        CHECK_NEAR(counted, (double)sum, 1e-6);
+        unmake(lga);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_bits_and_bytes_make_the_same_lattice),
         cmocka_unit_test(test_every_set_of_instructions_and_number_of_threads_gives_the_same_bytes),
         cmocka_unit_test(test_a_grain_held_by_a_wall_waits),
+        cmocka_unit_test(test_each_collision_is_counted_at_one_node),
         cmocka_unit_test(test_dice_fall_as_often_as_they_should),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,6 +4,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Each test is a sentence about a session; the references are what `frame`, `run` and `replay`
 make of the same scene."""
+import csv
 import json
 import os
 import re
@@ -132,6 +133,48 @@ def test_the_scene_of_a_session_runs_to_the_same_state():
                  "--progress", "none")
         made = json.loads(read("b/manifest.json"))["state_digest"]
         assert made == digest, (model, made, digest)
+
+
+def logged(folder):
+    """The rows of log.csv by their columns, without the seconds, which are each session's own."""
+    with open(folder + "/log.csv") as text:
+        rows = list(csv.DictReader(line for line in text if line[0] != "#"))
+    for row in rows:
+        del row["wall_seconds"]
+    return rows
+
+
+def test_a_session_logs_what_the_run_of_its_scene_logs():
+    for model, scene in STEERABLE.items():
+        scene = scene.replace("output = { ", "output = { log = 0.04; ")
+        live("a", steered(model), scene)
+        time, _, _ = end_of("a")
+        sandreel("run", "a/scene.cfg", "-o", "b", "--force", "--until", repr(time), "--progress",
+                 "none", "-s", "output.frames=0")
+        session, run = logged("a"), logged("b")
+        assert len(session) == int(time / 0.04 + 1e-9) + 1, (model, len(session))
+        assert session == run, (model, [pair for pair in zip(session, run) if pair[0] != pair[1]])
+        sandreel("replay", "a", "-o", "b", "--force")
+        assert logged("b") == session, model
+
+
+def test_the_log_of_a_session_follows_it_back_and_beyond_the_end():
+    scene = ED.replace("output = { ", "output = { log = 0.1; ")
+    live("a", "go until 1\n", scene)
+    live("b", "go until 0.73\nset gravity (3, 3)\ngo until 0.9\nback 0.42\ngo until 1\n", scene)
+    assert logged("a") == logged("b") and len(logged("a")) == 11
+    live("b", "set gravity (3, 3)\ngo until 0.9\nreset\ngo until 1\n", scene)
+    assert logged("a") == logged("b")
+    live("b", "go\ngo until 2.25\n", scene)
+    assert [float(row["time"]) for row in logged("b")][-3:] == [2.0, 2.1, 2.2]
+    # From a checkpoint on, the first row is the first that is due.
+    write("scene.cfg", scene)
+    sandreel("run", "scene.cfg", "-o", "r", "--force", "--until", "0.55", "--progress", "none",
+             "-s", "output.checkpoint=0.5", "-s", "output.frames=0")
+    write("commands", "go until 1\n")
+    sandreel("live", "r", "--commands", "commands", "-o", "b", "--force")
+    start = [row["time"] for row in logged("b")].index(logged("a")[6]["time"])
+    assert logged("b")[start:] == logged("a")[6:]
 
 
 def test_a_changed_log_is_noticed():

@@ -75,6 +75,19 @@ static const struct example examples[] = {
      "measure = { collisions = true; };", 6, true, true},
     {"sheared by the borders", "until = 6.0; box = [0.0, 0.0, 18.0, 18.0]; shear_rate = -0.3;"
      PERIODIC GRAINS GAS, 5, true, false},
+    {"impact parameters and rates of a cooling gas", "until = 6.0;"
+     "box = [0.0, 0.0, 18.0, 18.0];" PERIODIC GRAINS GAS
+     "measure = { impact_parameters = true; impact_bins = 20; collisions = true;"
+     "            collision_window = 0.7; };", 5, true, false},
+    /* Grains that leave and enter move the counts of the others about. */
+    {"counts and stress where grains come and go", "until = 16.0; box = [-9.0, 0.0, 9.0, 18.0];"
+     "gravity = (0.0, -1.0); bottom = \"open\"; count_max = 300;"
+     "grains = ({ radius = [0.4, 0.5]; restitution = 0.8; " SOFT " friction = 0.3; });"
+     "placements = ({ region = [-9.0, 2.0, 9.0, 8.0]; kind = \"square\"; spacing = 1.2;"
+     "                temperature = 1.0; });"
+     "walls = ({ shape = \"segment\"; points = ((-9.0, 1.0), (3.0, 1.0)); });"
+     "sources = ({ position = (-4.0, 14.0); width = 4.0; rate = 2.0; });"
+     "measure = { collision_counts = true; stress = true; cell = 3.0; };", 8, true, true},
     {"many grains for two threads", "until = 0.5; box = [0.0, 0.0, 75.0, 75.0];" PERIODIC GRAINS
      "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 16.0; "
      "});", 0.5, false, false},
@@ -216,6 +229,44 @@ static void check_grains(const struct trial *trial, const struct simulation *sim
     grains_free(&grains);
 }
 
+/* What the scene wants measured is there: sums are finite, and each collision is in them once. */
+static void check_measured(const struct trial *trial, const struct simulation *sim)
+{
+    const effects_t asked = trial->scene->effects;
+    const struct tally *tally = simulation_tally(sim);
+    const struct counters counters = simulation_count(sim);
+    if (asked & EFFECT_IMPACT) {
+        double sum = 0;
+        for (uint32_t b = 0; b < tally->impact.bins; b++) sum += tally->impact.count[b];
+        EXPECT(tally->impact.bins == trial->scene->measure.impact_bins);
+        EXPECT(sum == (double)counters.collisions);
+    }
+    if (asked & EFFECT_STRESS) {
+        const struct tally_stress *stress = &tally->stress;
+        double sum = 0, size = 0;
+        for (uint32_t c = 0; c < 4 * stress->nx * stress->ny; c++) {
+            sum += stress->cells[c];
+            size += fabs(stress->cells[c]);
+        }
+        for (int k = 0; k < 4; k++) sum -= stress->total[k];
+        EXPECT(stress->total[0] < 0 && stress->total[3] < 0);           /* they press */
+        EXPECT(fabs(sum) <= 1e-9 * size);
+    }
+    if (!(asked & EFFECT_COLLISION_COUNT)) return;
+    struct grains grains;
+    EXPECT(grains_create(&grains, (uint32_t)counters.grains + 8, 0, NULL));
+    simulation_observe(sim, &grains);
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < grains.count; i++) {
+        EXPECT(grains.collisions_elastic[i] <= grains.collisions[i]);
+        sum += grains.collisions[i];
+    }
+    EXPECT(sum > 0);
+    /* Both grains of a pair count it, and contacts with walls come on top. */
+    if (counters.grains_out == 0) EXPECT(sum >= 2 * counters.collisions);
+    grains_free(&grains);
+}
+
 static uint64_t digest_after(const struct trial *trial, int pieces, bool look, uint64_t budget)
 {
     struct simulation sim = start(trial);
@@ -228,6 +279,7 @@ static uint64_t digest_after(const struct trial *trial, int pieces, bool look, u
     const struct counters counters = simulation_count(&sim);
     EXPECT(counters.steps > 0);
     if (trial->example->collides) EXPECT(counters.collisions > 0);
+    check_measured(trial, &sim);
     simulation_destroy(&sim);
     return digest;
 }

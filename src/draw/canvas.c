@@ -333,9 +333,15 @@ void canvas_write(struct canvas *canvas, uint32_t row, uint32_t row_count, const
 /* Premultiplied to straight, rounded; opaque and empty pixels are what they are. */
 static void row_straighten(uint8_t *rgba, uint32_t count)
 {
-    uint8_t opaque = 255;
-    for (uint32_t i = 0; i < count; i++) opaque &= rgba[4 * i + 3];
-    if (opaque == 255) return;
+    uint32_t every = UINT32_MAX;                /* whole pixels: the compiler takes many at once */
+    for (size_t i = 0; i < count; i++) {
+        uint32_t pixel;
+        memcpy(&pixel, rgba + 4 * i, sizeof pixel);
+        every &= pixel;
+    }
+    uint8_t common[4];
+    memcpy(common, &every, sizeof common);
+    if (common[3] == 255) return;
     for (uint32_t i = 0; i < count; i++, rgba += 4) {
         const unsigned alpha = rgba[3];
         if (alpha == 255 || alpha == 0) continue;

@@ -358,8 +358,11 @@ static void chunk_ground(const struct frame *frame, struct painter *painter, uin
     const uint8_t pixel[4] = {(uint8_t)(color.r * color.a / 255),
                               (uint8_t)(color.g * color.a / 255),
                               (uint8_t)(color.b * color.a / 255), color.a};
-    const size_t count = (size_t)painter->width * (last - first);
-    for (size_t i = 0; i < count; i++) memcpy(painter->pixels + 4 * i, pixel, 4);
+    const size_t row = 4 * (size_t)painter->width;
+    for (size_t at = 0; at < row; at += 4) memcpy(painter->pixels + at, pixel, 4);
+    for (uint32_t y = 1; y < last - first; y++) {
+        memcpy(painter->pixels + y * row, painter->pixels, row);
+    }
     const struct splat_area area = area_rows(&frame->area, first, last);
     if (!frame->layer.field || area.y0 >= area.y1) return;
     fieldlayer_draw(&frame->layer, &frame->transform, painter->width, painter->height, &area,

@@ -63,7 +63,8 @@ static double value(const struct view *view, const struct grains *grains, uint32
 {
     switch ((enum color_by)view->color) {
     case COLOR_SPEED:
-        return grains->vx && grains->vy ? hypot(grains->vx[i], grains->vy[i]) : 0;
+        return grains->vx && grains->vy
+             ? sqrt(grains->vx[i] * grains->vx[i] + grains->vy[i] * grains->vy[i]) : 0;
     case COLOR_COLLISIONS: return grains->collision_rate ? (double)grains->collision_rate[i] : 0;
     case COLOR_SPIN: return grains->spin ? grains->spin[i] : 0;
     case COLOR_SPECIES: return grains->species ? grains->species[i] : 0;

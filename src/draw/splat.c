@@ -1,8 +1,8 @@
 /* splat.c - see splat.h; shaders/grain.frag says the same in GLSL.
  *
- * The loop over a row first computes coverages, which the compiler turns into SIMD, then adds them
- * to the sums, one pixel (four floats) at a time.  The styles are constants of forced-inline
- * loops, so plain discs pay nothing for rims and shading.
+ * A row goes in pieces of as many pixels as an AVX2 register has floats: their coverages are
+ * computed together, needed or not, then added to the sums, one pixel (four floats) at a time.  The
+ * styles are constants of forced-inline loops, so plain discs pay nothing for rims and shading.
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "draw/splat.h"
@@ -20,11 +20,14 @@
 #endif
 
 typedef float pixel __attribute__((vector_size(16)));
-typedef int32_t words __attribute__((vector_size(16)));
-typedef uint8_t lanes __attribute__((vector_size(16)));
-typedef uint8_t bytes __attribute__((vector_size(4)));
 
-enum { PIECE = 64 };            /* pixels of a row handled at a time */
+/* Two pixels. */
+typedef float pair __attribute__((vector_size(32)));
+typedef int32_t words __attribute__((vector_size(32)));
+typedef uint8_t lanes __attribute__((vector_size(32)));
+
+enum { PIECE = 8 };             /* pixels of a row handled at a time */
+enum { GROUP = 4 };             /* pixels that get their colours at a time */
 enum { RIM = 1, SHADE = 2 };    /* what a loop is compiled for */
 
 /* Below this radius a disc cannot be told from a square of its area, and sampling the analytic
@@ -48,14 +51,18 @@ enum { RIM = 1, SHADE = 2 };    /* what a loop is compiled for */
 #define RIM_MIN 0.8f
 #define RIM_MAX 2.5f
 
-static float bounded(float value, float low, float high)
+/* What the loops below call is forced into them: a call from their AVX2 forms to code without it
+ * would cost the processor's change between the two. */
+FORCE_INLINE float bounded(float value, float low, float high)
 {
     return value < low ? low : value > high ? high : value;
 }
 
+FORCE_INLINE float square_half(float radius) { return 0.8862269f * radius; }
+
 float splat_reach(float radius)
 {
-    return radius < RADIUS_SQUARE ? 0.8862269f * radius : radius + 0.5f;
+    return radius < RADIUS_SQUARE ? square_half(radius) : radius + 0.5f;
 }
 
 bool splat_touches(const struct splat *splat, const struct splat_area *area)
@@ -66,25 +73,25 @@ bool splat_touches(const struct splat *splat, const struct splat_area *area)
 }
 
 /* The pixels low..high-1 that an extent touches within first..last-1. */
-static void extent_pixels(float center, float reach, uint32_t first, uint32_t last,
-                          int32_t *low, int32_t *high)
+FORCE_INLINE void extent_pixels(float center, float reach, uint32_t first, uint32_t last,
+                                int32_t *low, int32_t *high)
 {
     const float from = floorf(center - reach), to = ceilf(center + reach);
     *low = from > (float)first ? (int32_t)from : (int32_t)first;
     *high = to < (float)last ? (int32_t)to : (int32_t)last;
 }
 
-static float overlap(float low, float high, int32_t cell)
+FORCE_INLINE float overlap(float low, float high, int32_t cell)
 {
     const float from = low > (float)cell ? low : (float)cell;
     const float to = high < (float)(cell + 1) ? high : (float)(cell + 1);
     return to - from;
 }
 
-static void square_add(float *sums, uint32_t width, const struct splat_area *area,
-                       const struct splat *splat, pixel color)
+FORCE_INLINE void square_add(float *sums, uint32_t width, const struct splat_area *area,
+                             const struct splat *splat, pixel color)
 {
-    const float half = splat_reach(splat->radius);
+    const float half = square_half(splat->radius);
     int32_t x0, x1, y0, y1;
     extent_pixels(splat->x, half, area->x0, area->x1, &x0, &x1);
     extent_pixels(splat->y, half, area->y0, area->y1, &y0, &y1);
@@ -104,7 +111,7 @@ struct disc {
     float shade, rim, rim_from; /* strengths, and where the rim begins */
 };
 
-static struct disc disc_prepare(const struct splat *splat, struct splat_style style)
+FORCE_INLINE struct disc disc_prepare(const struct splat *splat, struct splat_style style)
 {
     const float r = splat->radius, edge = sqrtf(r * r - EDGE_AREA);
     return (struct disc){
@@ -116,11 +123,13 @@ static struct disc disc_prepare(const struct splat *splat, struct splat_style st
     };
 }
 
-/* Coverage, and the factors of the grain's colour and of white, for `count` pixels of a row. */
-FORCE_INLINE void disc_row(const struct disc *disc, float x0, float dy, int32_t count,
-                           float *cover, float *color, float *white, unsigned effects)
+/* Coverage, and the factors of the grain's colour and of white, for a piece of a row. */
+FORCE_INLINE void disc_piece(const struct disc *disc, float x0, float dy, float *cover,
+                             float *color, float *white, unsigned effects)
 {
-    for (int32_t i = 0; i < count; i++) {
+    /* As a loop the compiler makes SIMD of it, and not of eight copies. */
+#pragma GCC unroll 1
+    for (int32_t i = 0; i < PIECE; i++) {
         const float dx = x0 + (float)i - disc->x;
         const float d = sqrtf(dx * dx + dy * dy);
         float a = disc->reach - d;
@@ -149,32 +158,48 @@ FORCE_INLINE void disc_row(const struct disc *disc, float x0, float dy, int32_t 
     }
 }
 
+/* Adds the first `count` pixels of a piece. */
+FORCE_INLINE void piece_add(pixel *row, pixel color, const float *cover, const float *own,
+                            const float *light, int32_t count, unsigned effects)
+{
+    const pixel opaque = {0, 0, 0, 1}, white = {1, 1, 1, 0};
+    for (int32_t i = 0; i < count; i++) {
+        if (effects & SHADE) row[i] += color * own[i] + white * light[i] + opaque * cover[i];
+        else if (effects) row[i] += color * own[i] + opaque * cover[i];
+        else row[i] += (color + opaque) * cover[i];
+    }
+}
+
 FORCE_INLINE void disc_add(float *sums, uint32_t width, const struct splat_area *area,
                            const struct splat *splat, pixel color, struct splat_style style,
                            unsigned effects)
 {
     const struct disc disc = disc_prepare(splat, style);
-    const pixel opaque = {0, 0, 0, 1}, white = {1, 1, 1, 0};
+    const int32_t end = (int32_t)area->x1;
     int32_t x0, x1, y0, y1;
+    float a[PIECE], c[PIECE], w[PIECE];
     extent_pixels(disc.y, disc.reach, area->y0, area->y1, &y0, &y1);
+    extent_pixels(disc.x, disc.reach, area->x0, area->x1, &x0, &x1);
+    if (x1 - x0 <= PIECE && x0 + PIECE <= end) {        /* one piece holds each of its rows */
+        pixel *row = (pixel *)sums + (size_t)(y0 - (int32_t)area->y0) * width + x0;
+        for (int32_t y = y0; y < y1; y++, row += width) {
+            disc_piece(&disc, (float)x0 + 0.5f, (float)y + 0.5f - disc.y, a, c, w, effects);
+            if (x1 - x0 > PIECE / 2) piece_add(row, color, a, c, w, PIECE, effects);
+            else piece_add(row, color, a, c, w, PIECE / 2, effects);
+        }
+        return;
+    }
     for (int32_t y = y0; y < y1; y++) {
         const float dy = (float)y + 0.5f - disc.y, q = disc.reach * disc.reach - dy * dy;
         if (q <= 0) continue;
         extent_pixels(disc.x, sqrtf(q), area->x0, area->x1, &x0, &x1);
         pixel *const row = (pixel *)sums + (size_t)(y - (int32_t)area->y0) * width;
         for (int32_t x = x0; x < x1; x += PIECE) {
-            float a[PIECE], c[PIECE], w[PIECE];
-            const int32_t count = x1 - x < PIECE ? x1 - x : PIECE;
-            disc_row(&disc, (float)x + 0.5f, dy, count, a, c, w, effects);
-            for (int32_t i = 0; i < count; i++) {
-                if (effects & SHADE) {
-                    row[x + i] += color * c[i] + white * w[i] + opaque * a[i];
-                } else if (effects) {
-                    row[x + i] += color * c[i] + opaque * a[i];
-                } else {
-                    row[x + i] += (color + opaque) * a[i];
-                }
-            }
+            disc_piece(&disc, (float)x + 0.5f, dy, a, c, w, effects);
+            /* Behind the disc the coverage is 0, and adding it costs less than a loop of unknown
+             * length; behind the area it need not be. */
+            if (x + PIECE <= end) piece_add(row + x, color, a, c, w, PIECE, effects);
+            else piece_add(row + x, color, a, c, w, x1 - x, effects);
         }
     }
 }
@@ -220,28 +245,48 @@ void splat_add(float *sums, uint32_t width, const struct splat_area *area,
     }
 }
 
-DISPATCH void splat_resolve(const float *sums, uint8_t *rgba, size_t count)
+/* Where the coverage is 0 the ground stays, where it is 1 it is gone, and beyond the grains share
+ * the pixel: all in one formula without branches, so that two pixels go at once. */
+FORCE_INLINE void resolve_group(const float *sums, uint8_t *rgba)
 {
-    for (size_t i = 0; i < count; i++, sums += 4, rgba += 4) {
-        const float coverage = sums[3];
-        if (coverage <= 0) continue;
-        pixel value = *(const pixel *)sums * 255;
-        if (coverage < 1) {
-            bytes below;
-            memcpy(&below, rgba, 4);
-            value += __builtin_convertvector(below, pixel) * (1 - coverage);
-        } else if (coverage > 1) {
-            value *= 1 / coverage;
-        }
+    if (sums[3] + sums[7] + sums[11] + sums[15] <= 0) return;
+    for (int half = 0; half < GROUP; half += 2, sums += 8, rgba += 8) {
+        pair sum;
+        int32_t below[2];
+        memcpy(&sum, sums, sizeof sum);
+        memcpy(below, rgba, sizeof below);
+        const pair coverage = __builtin_shufflevector(sum, sum, 3, 3, 3, 3, 7, 7, 7, 7);
+        const words over = coverage > 1, under = coverage < 1;
+        const pair one = {1, 1, 1, 1, 1, 1, 1, 1};
+        const pair shared = (pair)(((words)coverage & over) | ((words)one & ~over));
+        const pair ground = (pair)((words)(1 - coverage) & under);
+        const words pixels = {below[0], below[0], below[0], below[0],
+                              below[1], below[1], below[1], below[1]};
+        const words levels = pixels >> (words){0, 8, 16, 24, 0, 8, 16, 24} & 255;
+        pair value = sum * 255 * (1 / shared) + __builtin_convertvector(levels, pair) * ground;
         value += 0.5f;
         /* Lights may shine beyond white; premultiplied colours end at their alpha. */
-        const pixel most = {value[3], value[3], value[3], value[3]};
-        const words over = value > most;
-        value = (pixel)(((words)value & ~over) | ((words)most & over));
-        /* The lowest byte of each word; a conversion of vectors would go through four registers. */
+        const pair most = __builtin_shufflevector(value, value, 3, 3, 3, 3, 7, 7, 7, 7);
+        const words beyond = value > most;
+        value = (pair)(((words)value & ~beyond) | ((words)most & beyond));
+        /* The lowest byte of each word, to the lower end of each half of the register. */
         const lanes whole = (lanes)__builtin_convertvector(value, words);
-        const lanes color = __builtin_shufflevector(whole, whole, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4,
-                                                    8, 12, 0, 4, 8, 12);
+        const lanes color = __builtin_shufflevector(whole, whole,
+            0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12,
+            16, 20, 24, 28, 16, 20, 24, 28, 16, 20, 24, 28, 16, 20, 24, 28);
         memcpy(rgba, &color, 4);
+        memcpy(rgba + 4, (const uint8_t *)&color + 16, 4);
     }
+}
+
+DISPATCH void splat_resolve(const float *sums, uint8_t *rgba, size_t count)
+{
+    const size_t whole = count - count % GROUP;
+    for (size_t i = 0; i < whole; i += GROUP) resolve_group(sums + 4 * i, rgba + 4 * i);
+    float last_sums[4 * GROUP] = {0};
+    uint8_t last[4 * GROUP] = {0};
+    memcpy(last_sums, sums + 4 * whole, (count - whole) * 4 * sizeof *sums);
+    memcpy(last, rgba + 4 * whole, (count - whole) * 4);
+    resolve_group(last_sums, last);
+    memcpy(rgba + 4 * whole, last, (count - whole) * 4);
 }

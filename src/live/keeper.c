@@ -26,16 +26,17 @@ static bool append(struct keeper *keeper, const struct simulation *sim, uint64_t
         archive_end(&state->archive);
         return false;
     }
+    logging_archive(keeper->logging, &state->archive);
     keeper->bytes += state->archive.size;
     keeper->count++;
     return true;
 }
 
-bool keeper_open(struct keeper *keeper, const struct simulation *sim, double interval,
-                 struct error *error)
+bool keeper_open(struct keeper *keeper, const struct simulation *sim, struct logging *logging,
+                 double interval, struct error *error)
 {
     *keeper = (struct keeper){.interval = interval, .start = simulation_count(sim).time,
-                              .next = 1};
+                              .next = 1, .logging = logging};
     return append(keeper, sim, 0, error);
 }
 

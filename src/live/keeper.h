@@ -9,21 +9,22 @@
 #ifndef KEEPER_H
 #define KEEPER_H
 
-#include "model/simulation.h"
+#include "live/logging.h"
 
 struct keeper_state { double time; uint32_t phase; uint64_t turn; struct archive archive; };
 
 struct keeper {
     uint32_t count, capacity;
     struct keeper_state *states;        /* in the order of time */
+    struct logging *logging;    /* how far it was is kept with each state */
     size_t   bytes;
     double   interval, start;
     uint64_t next;              /* the next one is due at start + next * interval */
 };
 
 /* The first state kept is the present one. */
-bool keeper_open(struct keeper *keeper, const struct simulation *sim, double interval,
-                 struct error *error);
+bool keeper_open(struct keeper *keeper, const struct simulation *sim, struct logging *logging,
+                 double interval, struct error *error);
 void keeper_close(struct keeper *keeper);
 
 double keeper_due(const struct keeper *keeper);

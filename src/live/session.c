@@ -72,9 +72,13 @@ static bool write_start(struct session *session, struct error *error)
     folder_path(path, session->directory, "start.cfg");
     if (!file_save(path, text, strlen(text), error)) return false;
     if (simulation_count(&session->sim).time == 0) return true;
-    const struct archive *archive = &session->keeper.states[0].archive;
-    return file_save(folder_path(path, session->directory, "start.checkpoint"), archive->bytes,
-                     archive->size, error);
+    struct archive archive;
+    archive_begin_save(&archive);
+    const bool done = simulation_save(&session->sim, &archive, error)
+        && file_save(folder_path(path, session->directory, "start.checkpoint"), archive.bytes,
+                     archive.size, error);
+    archive_end(&archive);
+    return done;
 }
 
 static bool write_scene(struct session *session, const char *status, struct error *error)
@@ -87,11 +91,18 @@ static bool write_scene(struct session *session, const char *status, struct erro
         && manifest_save(&manifest, session->directory, error);
 }
 
+static void mark_present(struct session *session)
+{
+    const struct counters now = simulation_count(&session->sim);
+    session->reached = now.time;
+    session->steps = now.steps;
+}
+
 static bool take_start(struct session *session, const struct session_request *request,
                        struct error *error)
 {
     if (!load_start(session, request, error)) return false;
-    session->reached = simulation_count(&session->sim).time;
+    mark_present(session);
     return true;
 }
 
@@ -111,7 +122,8 @@ static bool open_folder(struct session *session, const struct session_request *r
     }
     return folder_claim(session->directory, request->force, error)
         && write_start(session, error) && write_scene(session, "live", error)
-        && journal_begin(session, error);
+        && journal_begin(session, error)
+        && logging_open(&session->logging, session->directory, &session->sim, error);
 }
 
 bool session_open(struct session *session, const struct session_request *request,
@@ -131,8 +143,9 @@ bool session_open(struct session *session, const struct session_request *request
         && timeline_copy(&session->timeline, &session->origin, error)
         && simulation_create(&session->sim, session->base.model, scene, error)
         && take_start(session, request, error)
-        && keeper_open(&session->keeper, &session->sim, scene->until / kept_states, error)
-        && open_folder(session, request, error);
+        && open_folder(session, request, error)
+        && keeper_open(&session->keeper, &session->sim, &session->logging,
+                       scene->until / kept_states, error);
 }
 
 bool session_close(struct session *session, struct error *error)
@@ -144,6 +157,7 @@ bool session_close(struct session *session, struct error *error)
     sight_close(session);
     forget_before(session);
     keeper_close(&session->keeper);
+    logging_close(&session->logging);
     if (session->sim.state) simulation_destroy(&session->sim);
     setup_free(&session->now);
     setup_free(&session->look_setup);
@@ -196,9 +210,14 @@ static void adapt(struct session *session, double took, uint64_t steps)
     }
 }
 
-/* States to keep and frames of a movie that are due at `time`, which has been reached. */
+/* Rows of the log, states to keep and frames of a movie that are due at `time`, which has been
+ * reached; the row first, so that a state knows it. */
 static bool serve(struct session *session, double time, struct error *error)
 {
+    if (logging_due(&session->logging) <= time
+        && !logging_row(&session->logging, &session->sim, session->wall, error)) {
+        return false;
+    }
     if (keeper_due(&session->keeper) <= time
         && !keeper_keep(&session->keeper, &session->sim, error)) {
         return false;
@@ -209,18 +228,20 @@ static bool serve(struct session *session, double time, struct error *error)
 /* One piece towards t; *arrived says whether it is reached. */
 static bool advance(struct session *session, double t, bool *arrived, struct error *error)
 {
-    const double due = fmin(t, fmin(keeper_due(&session->keeper), sight_movie_due(session)));
+    const double kept = fmin(keeper_due(&session->keeper), logging_due(&session->logging));
+    const double due = fmin(t, fmin(kept, sight_movie_due(session)));
     const uint64_t left = session->steps_left;
     const uint64_t budget = left > 0 && left < session->budget ? left : session->budget;
-    const uint64_t before = simulation_count(&session->sim).steps;
     const double start = clock_wall();
     const enum advance outcome = simulation_advance(&session->sim, due, budget, error);
-    const uint64_t steps = simulation_count(&session->sim).steps - before;
+    const struct counters now = simulation_count(&session->sim);
+    const uint64_t steps = now.steps - session->steps;
+    session->steps = now.steps;
     adapt(session, clock_wall() - start, steps);
     session->version++;
     if (steps > 0) forget_before(session);
     session->between = outcome != ADVANCE_REACHED;
-    session->reached = session->between ? simulation_count(&session->sim).time : due;
+    session->reached = session->between ? now.time : due;
     *arrived = outcome == ADVANCE_REACHED && due == t;
     if (outcome == ADVANCE_BROKEN) return false;
     if (left > 0) {
@@ -233,8 +254,7 @@ static bool advance(struct session *session, double t, bool *arrived, struct err
 bool session_piece(struct session *session, double t_limit, struct error *error)
 {
     /* Steps are taken without a time in mind; the limit only has to be out of their reach. */
-    const double now = simulation_count(&session->sim).time;
-    const double far = now + 1e3 * session_scene(session)->until;
+    const double far = session->reached + 1e3 * session_scene(session)->until;
     const bool by_steps = session->steps_left > 0;
     const double end = fmin(by_steps ? INFINITY : session->go_until, far);
     bool arrived = false;
@@ -306,7 +326,7 @@ bool session_adopt(struct session *session, struct setup *setup, uint32_t phase,
     if (state) {
         simulation_destroy(&session->sim);
         session->sim = fresh;
-        session->reached = simulation_count(&fresh).time;
+        mark_present(session);
         forget_before(session);
     } else {
         done = simulation_enter(&session->sim, setup->scene, phase, &session->before, error);
@@ -334,8 +354,12 @@ bool session_restart(struct session *session, const struct timeline *timeline,
         setup_free(&setup);
         return false;
     }
-    if (!keeper_open(&keeper, &fresh, setup.scene->until / kept_states, error)) {
+    logging_close(&session->logging);
+    if (!logging_open(&session->logging, session->directory, &fresh, error)
+        || !keeper_open(&keeper, &fresh, &session->logging, setup.scene->until / kept_states,
+                        error)) {
         keeper_close(&keeper);
+        logging_close(&session->logging);
         simulation_destroy(&fresh);
         setup_free(&setup);
         return false;
@@ -343,7 +367,7 @@ bool session_restart(struct session *session, const struct timeline *timeline,
     pthread_mutex_lock(&session->scene_lock);
     simulation_destroy(&session->sim);
     session->sim = fresh;
-    session->reached = 0;
+    mark_present(session);
     keeper_close(&session->keeper);
     session->keeper = keeper;
     forget_before(session);

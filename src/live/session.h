@@ -4,9 +4,9 @@
  * is steered goes the way of phases (timeline.h), so the session is repeated bit for bit from
  * what session.log says; looking, pausing and going on never change a run.
  *
- * Its folder holds start.cfg (the scene as it was given), session.log, what was saved on command,
- * and in the end scene.cfg: the scene with every change as a phase, which `sandreel run` and
- * `frame` repeat.
+ * Its folder holds start.cfg (the scene as it was given), session.log, log.csv, what was saved on
+ * command, and in the end scene.cfg: the scene with every change as a phase, which `sandreel run`
+ * and `frame` repeat.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -52,6 +52,7 @@ struct session {
     struct simulation sim;
     uint64_t budget;            /* of one piece of about piece_seconds */
     struct keeper keeper;
+    struct logging logging;     /* log.csv */
     struct archive before;      /* the state before the phase that began last, at before_time */
     double before_time;         /* NAN: none */
 
@@ -71,6 +72,7 @@ struct session {
     double   reached;           /* the time that the last piece was to reach, and did (a model
                                  * with coarse ticks may stand before it) ... */
     bool     between;           /* ... or the model's own: it ended by its budget, between times */
+    uint64_t steps;             /* likewise: counting is a sum over all grains, so once a piece */
     double   wall;              /* seconds spent on advancing */
     uint64_t version;           /* counts whatever changes the picture */
     uint64_t expected, disappointed;    /* `expect` so far, and how many did not hold */

@@ -56,7 +56,11 @@ static bool keep_before(struct session *session, double time, struct error *erro
 static bool try_phase(struct session *session, struct timeline *copy,
                       const struct timeline_texts *sets, const double *push, struct error *error)
 {
-    const double time = now_of(session).time;
+    /* Coarse ticks may stand beyond the time that was to be reached; what is due in between belongs
+     * to the phase before, as in a run. */
+    const double time = now_of(session).time, reached = session->reached;
+    if (!session_reach(session, time, error)) return false;
+    session->reached = reached;
     struct timeline_entry *entry = timeline_at(copy, time, error);
     if (!entry) return false;
     for (uint32_t k = 0; k < sets->count; k++) {
@@ -249,7 +253,7 @@ static bool return_to(struct session *session, const struct keeper_state *state,
     session->timeline = *copy;
     *copy = old;
     keeper_rewind(&session->keeper, state);
-    return true;
+    return logging_return(&session->logging, &state->archive, error);
 }
 
 static void rest(struct session *session)

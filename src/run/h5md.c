@@ -10,6 +10,7 @@
 #ifdef SANDREEL_HDF5
 
 #include "run/build.h"
+#include "run/h5md_layout.h"
 
 #include <fcntl.h>
 #include <hdf5.h>
@@ -19,20 +20,10 @@
 #include <string.h>
 #include <unistd.h>
 
-/* X(name in the file, member of struct grains, HDF5 type, its dimension) of one number a grain */
-#define SCALARS(X)                                                              \
-    X(id,               id,             H5T_NATIVE_UINT32, "1")                 \
-    X(species,          species,        H5T_NATIVE_UINT16, "1")                 \
-    X(mass,             mass,           H5T_NATIVE_DOUBLE, "mass")              \
-    X(radius,           radius,         H5T_NATIVE_DOUBLE, "length")            \
-    X(angle,            angle,          H5T_NATIVE_DOUBLE, "1")                 \
-    X(angular_velocity, spin,           H5T_NATIVE_DOUBLE, "1/time")            \
-    X(collision_rate,   collision_rate, H5T_NATIVE_FLOAT,  "1/time")
-
 enum {
     ELEMENT_position, ELEMENT_velocity,
 #define X(name, member, type, dimension) ELEMENT_##name,
-    SCALARS(X)
+    H5MD_SCALARS(X)
 #undef X
     ELEMENTS
 };
@@ -40,7 +31,7 @@ enum {
 static const struct { const char *name, *dimension; int components; } elements[ELEMENTS] = {
     {"position", "length", 2}, {"velocity", "speed", 2},
 #define X(name, member, type, dimension) {#name, dimension, 1},
-    SCALARS(X)
+    H5MD_SCALARS(X)
 #undef X
 };
 
@@ -82,7 +73,7 @@ static hid_t type_of(int element)
 {
     switch (element) {
 #define X(name, member, type, dimension) case ELEMENT_##name: return type;
-    SCALARS(X)
+    H5MD_SCALARS(X)
 #undef X
     default: return H5T_NATIVE_DOUBLE;
     }
@@ -126,9 +117,20 @@ static void put_unit(struct h5md *h5md, hid_t dataset, const struct scene *scene
 
 /* ---- a new file ---------------------------------------------------------------------------- */
 
+/* Properties of something new: without the date, so that the same run gives the same bytes. */
+static hid_t undated(hid_t class)
+{
+    const hid_t how = H5Pcreate(class);
+    H5Pset_obj_track_times(how, false);
+    return how;
+}
+
 static hid_t make_group(struct h5md *h5md, hid_t owner, const char *name)
 {
-    return note(h5md, H5Gcreate2(owner, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    const hid_t how = undated(H5P_GROUP_CREATE);
+    const hid_t group = note(h5md, H5Gcreate2(owner, name, H5P_DEFAULT, how, H5P_DEFAULT));
+    H5Pclose(how);
+    return group;
 }
 
 /* /h5md: version, author, creator, and the module that allows units. */
@@ -176,8 +178,10 @@ static void write_box(struct h5md *h5md, const struct scene *scene)
     put_attribute(h5md, box, "boundary", type, 2, boundary);
     put_attribute(h5md, box, "offset", H5T_NATIVE_DOUBLE, 2, scene->box);
     const hid_t space = H5Screate_simple(1, (const hsize_t[]){2}, NULL);
+    const hid_t how = undated(H5P_DATASET_CREATE);
     const hid_t set = note(h5md, H5Dcreate2(box, "edges", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT,
-                                            H5P_DEFAULT, H5P_DEFAULT));
+                                            how, H5P_DEFAULT));
+    H5Pclose(how);
     note(h5md, H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, edges));
     put_unit(h5md, set, scene, "length");
     H5Dclose(set);
@@ -192,7 +196,7 @@ static hid_t make_dataset(struct h5md *h5md, hid_t owner, const char *name, hid_
 {
     const hsize_t size[3] = {0, h5md->rows, 2}, most[3] = {H5S_UNLIMITED, H5S_UNLIMITED, 2};
     const hid_t space = H5Screate_simple(rank, size, most);
-    const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+    const hid_t how = undated(H5P_DATASET_CREATE);
     note(h5md, H5Pset_chunk(how, rank, chunk));
     note(h5md, H5Pset_shuffle(how));
     note(h5md, H5Pset_deflate(how, DEFLATE));
@@ -208,7 +212,7 @@ static void make_element(struct h5md *h5md, int element, const struct scene *sce
 {
     static const double none = NAN;
     static const float none_float = NAN;
-    static const uint32_t none_whole = UINT32_MAX;
+    static const uint32_t none_whole = H5MD_NO_ID;
     const hid_t type = type_of(element), group = make_group(h5md, h5md->group,
                                                             elements[element].name);
     const void *fill = H5Tget_class(type) == H5T_INTEGER ? (const void *)&none_whole
@@ -266,9 +270,10 @@ struct h5md *h5md_create(const char *path, const struct scene *scene, struct err
 {
     struct h5md *h5md = take(path, error);
     if (!h5md) return NULL;
-    const hid_t how = access_list();
+    const hid_t how = access_list(), root = undated(H5P_FILE_CREATE);
     h5md->rows = scene->placed.count > CHUNK_GRAINS_MIN ? scene->placed.count : CHUNK_GRAINS_MIN;
-    h5md->file = note(h5md, H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, how));
+    h5md->file = note(h5md, H5Fcreate(path, H5F_ACC_TRUNC, root, how));
+    H5Pclose(root);
     H5Pclose(how);
     if (!h5md->failed) {
         write_header(h5md, scene);
@@ -391,7 +396,7 @@ bool h5md_add(struct h5md *h5md, const struct grains *grains, uint64_t steps, st
     write_pairs(h5md, ELEMENT_velocity, grains->vx, grains->vy, grains->count);
 #define X(name, member, type, dimension) \
     write_rows(h5md, ELEMENT_##name, grains->count, grains->member);
-    SCALARS(X)
+    H5MD_SCALARS(X)
 #undef X
     h5md->frames++;
     return !h5md->failed || fail(h5md, "this frame of the trajectory could not be written", error);

@@ -79,8 +79,9 @@ bool logbook_open(struct logbook *logbook, const char *path, const struct simula
 static void write_bodies(struct logbook *logbook, const struct tally *tally, double time)
 {
     const double span = time - logbook->time_last;
+    static const struct tally_body gone = {0};          /* a phase has taken it away */
     for (uint32_t b = 0; b < logbook->body_count; b++) {
-        const struct tally_body *body = &tally->bodies[b];
+        const struct tally_body *body = b < tally->body_count ? &tally->bodies[b] : &gone;
         const double now[3] = {body->impulse_x, body->impulse_y, body->angular_impulse};
         double *last = logbook->impulse_last + 3 * (size_t)b;
         for (int k = 0; k < 3; k++) {

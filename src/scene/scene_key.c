@@ -206,8 +206,12 @@ static const struct key measure_keys[] = {
     COUNT(measure, impact_bins, "50", 10000, "of the impact parameter, over 0 to 1"),
     BOOL(measure, stress, "false",
          "the stress that collisions carry and the kinetic one: in log.csv, and as maps"),
-    TEXTS(measure, cost, "what `sandreel cost` compares: energy, collisions, discharge, force, "
-          "density, height; absent: what suits the scene"),
+    TEXTS(measure, cost, "what `sandreel cost` compares: energy, collisions, discharge, rate, "
+          "height, slope, force, structure, density, path; absent: what suits the scene"),
+    TEXT(measure, reference, "", NULL, "with what `sandreel cost` compares: a model and keys, "
+         "=*2 being a factor on what the model chooses; absent: md or ed, by the effects"),
+    TEXTS(measure, settings, "what `sandreel cost` tries, each a model and keys; absent: a list "
+          "for every model"),
 };
 
 static const struct key output_keys[] = {

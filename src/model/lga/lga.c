@@ -11,6 +11,7 @@
 
 #include "model/model.h"
 #include "model/speed.h"
+#include "model/stepping.h"
 
 #include <assert.h>
 #include <math.h>
@@ -19,8 +20,8 @@
 
 #define SQRT7 2.6457513110645905905
 
-/* The plain form takes 40 bytes a node, 2.7 GB in all; the fast one takes bits. */
-static const double sites_max_plain = 1 << 26, sites_max_fast = 0xf0000000u;
+/* Nodes are numbered in 32 bits. */
+static const double sites_max = 0xf0000000u;
 
 #define ROW(member) offsetof(struct lga_settings, member)
 static const struct key keys[] = {
@@ -120,17 +121,6 @@ static double sites_about(const struct scene *scene, double spacing)
     return (width / spacing + 5) * (height / spacing + 5) * 2 / sqrt(3);
 }
 
-static bool is_fast(const struct lga_settings *s)
-{
-    const bool heap = s->heap && s->method == LGA_SANDPILE;
-    return lga_step_is_fast(&(struct lga_rule){.method = (enum lga_method)s->method, .heap = heap});
-}
-
-static double sites_max(const struct lga_settings *s)
-{
-    return is_fast(s) ? sites_max_fast : sites_max_plain;
-}
-
 /* Fills in spacing and tick, the same ones for all phases.  k and pw stay open: they follow from
  * each phase's own restitution. */
 static void fill_settings(const struct scene *scene, const struct lga_settings *s)
@@ -146,10 +136,10 @@ static void lga_resolve(struct scene *scene, struct findings *findings)
 {
     const struct lga_settings s = completed(scene);
     fill_settings(scene, &s);
-    if (!(sites_about(scene, s.spacing) <= sites_max(&s))) {
+    if (!(sites_about(scene, s.spacing) <= sites_max)) {
         findings_tell(findings, scene, FINDING_ERROR, "lga.spacing", "lga.spacing = %g gives about "
             "%.3g nodes, more than %.3g; use a larger spacing or a smaller box", s.spacing,
-            sites_about(scene, s.spacing), sites_max(&s));
+            sites_about(scene, s.spacing), sites_max);
     }
     const double gx = scene->gravity[0], gy = scene->gravity[1];
     if (gx != 0 || gy > 0) {
@@ -173,9 +163,10 @@ static uint64_t lga_memory(const struct scene *scene)
 {
     const struct lga_settings s = completed(scene);
     const int planes = s.method == LGA_GMLG ? LGA_GMLG_PLANES : LGA_PLANES;
-    const double plain = LGA_DIRECTIONS * sizeof(uint32_t) + 8, fast = (planes + 4) / 8.0;
-    const double sites = fmin(sites_about(scene, s.spacing), 1e15);
-    return (uint64_t)(sites * (is_fast(&s) ? fast : plain));
+    /* Walls, sinks, a bit for each node in a search for room, and the surplus. */
+    const int counted = scene->effects & EFFECT_COLLISION_RATE ? 2 * LGA_RATE_DIGITS : 0;
+    const double bytes = (planes + 4 + (s.heap ? 2 : 0) + counted) / 8.0;
+    return (uint64_t)(fmin(sites_about(scene, s.spacing), 1e15) * bytes);
 }
 
 /* --- life --- */
@@ -227,10 +218,10 @@ static bool set_up(struct lga *lga, struct error *error)
 {
     const struct scene *scene = lga->scene;
     const struct lga_settings s = completed(scene);
-    if (!(s.spacing > 0) || !(sites_about(scene, s.spacing) <= sites_max(&s))) {
+    if (!(s.spacing > 0) || !(sites_about(scene, s.spacing) <= sites_max)) {
         return error_set_code(error, EXIT_SCENE, "%s: lga.spacing = %g does not give a lattice of "
             "1 to %.3g nodes; delete the line and sandreel chooses", scene->path, s.spacing,
-            sites_max(&s));
+            sites_max);
     }
     lga->rule = (struct lga_rule){
         .method = (enum lga_method)s.method, .gravity = scene->effects & EFFECT_GRAVITY,
@@ -246,6 +237,10 @@ static bool set_up(struct lga *lga, struct error *error)
     lga->sites = lga->lattice.rows * lga->lattice.columns;
     lga->tick = s.tick;
     lga->seed = scene->seed;
+    if (scene->effects & EFFECT_COLLISION_RATE) {
+        lga->rate.window = (uint64_t)fmin(fmax(rint(stepping_window(scene, s.tick) / s.tick), 1),
+                                          0x1p53);
+    }
     if (!lga_step_allocate(lga) || !arena_array(&lga->arena, &lga->entered, scene->source_count)) {
         return error_set(error, "%s: not enough memory for a lattice of %u nodes; give "
             "lga.spacing a larger value than %g", scene->path, lga->sites, s.spacing);
@@ -350,7 +345,7 @@ static const char *check_loaded(struct lga *lga, double tick)
     for (uint32_t n = 0; n < lga->sites && lga->heap; n++) {
         if (lga->heap[n] > 1) return "the saved lattice holds a node in an impossible state";
     }
-    for (uint32_t row = 0; row < lga->lattice.rows && lga->bits; row++) lga_bits_trim(lga, row);
+    for (uint32_t row = 0; row < lga->lattice.rows && lga->bits; row++) lga_bits_clean(lga, row);
     return NULL;
 }
 
@@ -366,6 +361,10 @@ static void lga_archive(void *state, struct archive *archive)
         archive_array(archive, "lga.rest", lga->rest, lga->sites);
     }
     if (lga->heap) archive_array(archive, "lga.heap", lga->heap, lga->sites);
+    if (lga->bits && lga->bits->heap) {
+        archive_array(archive, "lga.heap", lga->bits->heap,
+                      (size_t)lga->lattice.rows * lga->bits->stride);
+    }
     archive_value(archive, "lga.ticks", &lga->ticks);
     archive_value(archive, "lga.tick", &tick);
     archive_value(archive, "lga.base_ticks", &lga->base_ticks);
@@ -379,6 +378,7 @@ static void lga_archive(void *state, struct archive *archive)
         snprintf(name, sizeof name, "lga.source.%u", k);
         archive_value(archive, name, &lga->entered[k]);
     }
+    lga_rate_archive(lga, archive);
     if (archive->mode != ARCHIVE_LOAD || archive->failed) return;
     const char *wrong = check_loaded(lga, tick);
     if (wrong) {
@@ -401,7 +401,8 @@ const struct model model_lga = {
     /* Friction is the lattice's own: its slopes stand without a coefficient, and `s` says how
      * firmly a grain with one-sided support holds. */
     .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_FRICTION | EFFECT_POLYDISPERSE
-              | EFFECT_PERIODIC | EFFECT_WALLS | EFFECT_GATES | EFFECT_INFLOW | EFFECT_OUTFLOW,
+              | EFFECT_PERIODIC | EFFECT_WALLS | EFFECT_GATES | EFFECT_INFLOW | EFFECT_OUTFLOW
+              | EFFECT_COLLISION_RATE,
     .settings = &group,
     .resolve  = lga_resolve,
     .memory   = lga_memory,

@@ -102,9 +102,30 @@ void lga_bits_trim(const struct lga *lga, uint32_t row)
     }
 }
 
+void lga_bits_clean(const struct lga *lga, uint32_t row)
+{
+    const struct lga_bits *bits = lga->bits;
+    for (uint32_t x = lga->lattice.columns; x < 64 * bits->words; x++) {
+        for (uint32_t p = 0; p < bits->depth; p++) put_bit(plane(bits, row, p), bits->words, x, 0);
+    }
+}
+
+bool lga_bits_allocate_real(struct lga *lga)
+{
+    struct lga_bits *bits = lga->bits;
+    if (!arena_array(&lga->arena, &bits->real, bits->words)) return false;
+    for (uint32_t x = 0; x < lga->lattice.columns; x++) put_bit(bits->real, bits->words, x, 1);
+    return true;
+}
+
 uint64_t *lga_bits_row(const struct lga *lga, uint32_t row) { return plane(lga->bits, row, 0); }
 
 uint64_t *lga_bits_wall(const struct lga *lga, uint32_t row) { return wall_row(lga->bits, row); }
+
+uint64_t *lga_bits_heap(const struct lga *lga, uint32_t row)
+{
+    return lga->bits->heap + (size_t)row * lga->bits->stride + LGA_LANES;
+}
 
 void lga_bits_join(const struct lga *lga, uint64_t *row)
 {
@@ -143,7 +164,8 @@ static unsigned effects_of(const struct lga *lga)
     if (lga->rule.gravity) effects |= LGA_BITS_GRAVITY;
     if (lga->trapped) effects |= LGA_BITS_HELD | LGA_BITS_WALLS;
     const struct lga_die mirror = lga->dice.of[LGA_DIE_MIRROR];
-    if ((effects & LGA_BITS_WALLS) && (mirror.bits || mirror.threshold)) effects |= LGA_BITS_MIRROR;
+    const bool mirrors = mirror.bits || mirror.threshold || lga->bits->heap;
+    if ((effects & LGA_BITS_WALLS) && mirrors) effects |= LGA_BITS_MIRROR;
     return effects;
 }
 
@@ -155,7 +177,7 @@ static uint64_t collide(const struct lga *lga, uint32_t y, uint64_t *out, unsign
     const struct lga_row_collide row = {
         .words = bits->words, .stride = bits->stride, .effects = effects,
         .key = lga_dice_key((struct lga_dice_source){lga->seed, lga->ticks, y, 0}),
-        .dice = &lga->dice, .in = plane(bits, y, 0),
+        .dice = &lga->dice, .hits = lga_rate_row(lga, y), .in = plane(bits, y, 0),
         .out = out, .wall = wall_row(bits, y), .wall_left = below + column_step[y & 1][4],
         .wall_right = below + column_step[y & 1][5]
     };
@@ -180,10 +202,11 @@ static uint64_t prepare(const struct lga *lga, uint32_t y, uint32_t band, uint32
 }
 
 /* The nodes of a word whose movers a wall reflects like a mirror: by the same rule as in the plain
- * form, one by one, for they are few. */
-static void reflect(const struct lga *lga, const struct lga_row_stream *row,
-                    const uint64_t *mirror)
+ * form, one by one, for they are few.  Where there is a heap, plates do so always, and what came
+ * to the heap has stopped. */
+static void reflect(const struct lga *lga, const struct lga_row_stream *row)
 {
+    const uint64_t *mirror = row->own[LGA_PLANE_MIRROR];
     const uint32_t words = row->words;
     for (uint32_t w = 0; w < words; w++) {
         uint64_t wall[LGA_DIRECTIONS], stuck = 0;
@@ -191,7 +214,12 @@ static void reflect(const struct lga *lga, const struct lga_row_stream *row,
             wall[d] = row->wall_from[(d + 3) % LGA_DIRECTIONS][w];
             stuck |= row->own[d][w] & wall[d];
         }
-        for (stuck &= mirror[w] & ~row->wall[w]; stuck; stuck &= stuck - 1) {
+        uint64_t mirrors = mirror[w];
+        if (row->heap) {
+            mirrors |= wall[4] & wall[5] & ~(wall[0] | wall[1] | wall[2] | wall[3]);
+            mirrors &= ~row->heap[w];
+        }
+        for (stuck &= mirrors & ~row->wall[w]; stuck; stuck &= stuck - 1) {
             const int b = __builtin_ctzll(stuck);
             if ((uint32_t)b * words + w >= lga->lattice.columns) continue;
             unsigned blocked = 0, moving = 0, now = 0;
@@ -223,13 +251,17 @@ static uint64_t stream(const struct lga *lga, uint32_t y, uint64_t *const ring[3
         row.from[d] = ring[1 + row_step[back]] + (uint32_t)d * bits->stride + shift;
         row.wall_from[d] = wall_row(bits, row_at(lga, y, row_step[back])) + shift;
     }
-    for (uint32_t p = 0; p < LGA_PLANES; p++) row.own[p] = ring[1] + p * bits->stride;
-    const bool rare = effects & (LGA_BITS_SINKS | LGA_BITS_HELD);
-    const uint64_t left = rare ? kernel->stream_any(&row)
-                               : kernel->stream[(effects & LGA_BITS_WALLS) != 0](&row);
-    if (effects & LGA_BITS_MIRROR) {
-        reflect(lga, &row, ring[1] + LGA_PLANES * bits->stride);
+    for (uint32_t p = 0; p < LGA_RING_PLANES; p++) row.own[p] = ring[1] + p * bits->stride;
+    if (bits->heap) {
+        row.heap = lga_bits_heap(lga, y);
+        row.surplus = bits->surplus + (size_t)y * bits->digits * bits->words;
+        row.real = bits->real;
+        row.spills = bits->spills + y;
     }
+    const bool rare = effects & (LGA_BITS_SINKS | LGA_BITS_HELD);
+    const uint64_t left = bits->heap ? kernel->stream_heap(&row) : rare ? kernel->stream_any(&row)
+                        : kernel->stream[(effects & LGA_BITS_WALLS) != 0](&row);
+    if (effects & LGA_BITS_MIRROR) reflect(lga, &row);
     lga_bits_trim(lga, y);
     return left;
 }
@@ -270,7 +302,6 @@ void lga_bits_step(struct lga *lga)
     uint64_t collisions = 0, left = 0;
     if (lga->rule.method == LGA_GMLG) {
         lga_bits_gmlg_step(lga, kernels[lga->simd]);
-        lga->ticks++;
         return;
     }
     if (lga->rule.method == LGA_SANDPILE) {
@@ -289,9 +320,9 @@ void lga_bits_step(struct lga *lga)
         collisions += sum.collisions;
         left += sum.left;
     }
+    if (bits->heap) lga_bits_sand_settle(lga, kernels[lga->simd]);
     lga->collisions += collisions;
     lga->grains_out += left;
-    lga->ticks++;
 }
 
 /* --- nodes one by one --- */

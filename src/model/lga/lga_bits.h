@@ -14,7 +14,9 @@
 
 #include "model/lga/lga.h"
 
-enum { LGA_PLANES = 7, LGA_RING = 6, LGA_RING_PLANES = LGA_PLANES + 1 };
+/* A row on its way has two planes of dice besides: what mirrors, and what a plate stops. */
+enum { LGA_PLANES = 7, LGA_RING = 6, LGA_RING_PLANES = LGA_PLANES + 2 };
+enum { LGA_PLANE_MIRROR = LGA_PLANES, LGA_PLANE_PLATE };
 
 enum {
     LGA_BITS_LOSS = 1, LGA_BITS_GRAVITY = 2, LGA_BITS_WALLS = 4, LGA_BITS_SINKS = 8,
@@ -34,10 +36,13 @@ struct lga_bits {
     uint64_t *wall;             /* [row][word], with margins */
     uint64_t *sink;             /* [row][word]; NULL: none */
     uint8_t  *kinds;            /* a row of them for each band, while walls are drawn */
-    uint64_t *real;             /* [word]: which bits of a row are its nodes; gmlg */
+    uint64_t *real;             /* [word]: which bits of a row are its nodes; gmlg, heaps */
     uint64_t *rings;            /* rows after their collisions: [band][LGA_RING][plane][word] */
-    uint64_t *surplus;          /* sandpile: rest grains beyond the first, in two bits:
-                                 * [row][low, high][word] */
+    uint64_t *surplus;          /* sandpile: rest grains beyond the first, lowest bit first:
+                                 * [row][digit][word] */
+    uint32_t digits;            /* of those: two, three if a heap catches grains */
+    uint8_t  *spills;           /* [row]: are there any? */
+    uint64_t *heap;             /* [row][word], with margins: who belongs to it; NULL: none */
     unsigned effects;
 };
 
@@ -47,7 +52,7 @@ struct lga_row_collide {
     uint64_t key;               /* of the row's random words */
     const struct lga_dice *dice;
     const uint64_t *in;
-    uint64_t *out;
+    uint64_t *out, *hits;       /* the row's digits of collisions counted; NULL: not asked for */
     const uint64_t *wall, *wall_left, *wall_right;      /* here, and where a grain would fall */
 };
 
@@ -57,8 +62,11 @@ struct lga_row_stream {
     uint64_t *out;
     const uint64_t *from[LGA_DIRECTIONS];       /* where the movers of a direction come from */
     const uint64_t *wall_from[LGA_DIRECTIONS];  /* or the wall that sends others back */
-    const uint64_t *own[LGA_PLANES];
+    const uint64_t *own[LGA_RING_PLANES];
     const uint64_t *wall, *sink;
+    uint64_t *heap, *surplus;   /* of a sandpile with a heap, and which bits are nodes */
+    const uint64_t *real;
+    uint8_t *spills;
 };
 
 /* The two stages of the sandpile. */
@@ -68,19 +76,28 @@ struct lga_row_stop {
     const uint64_t *wall;
     uint64_t key;
     const struct lga_dice *dice;
-    uint64_t *planes, *low, *high;
+    uint64_t *planes, *low, *high, *hits;
+    uint8_t *spills;
 };
 
 struct lga_row_fall {
     uint32_t words, stride;
-    bool held;
+    bool held, fly, plate;      /* gravity bends movers; a plate may stop what falls onto it */
     const uint64_t *wall;
     uint64_t key;
     const struct lga_dice *dice;
     const uint64_t *in;
     uint64_t *out;
-    uint64_t *bend, *bend_side; /* which nodes' movers shall be bent, and to which side */
     const uint64_t *wall_left, *wall_right, *taken_left, *taken_right;
+    const uint64_t *rest_left, *rest_right;     /* with `fly`: rest grains there */
+};
+
+/* Which rest grains lie on the heap or on walls, and so belong to it. */
+struct lga_row_bind {
+    uint32_t words;
+    const uint64_t *rest, *wall;
+    const uint64_t *wall_left, *wall_right, *heap_left, *heap_right;    /* of the row below */
+    uint64_t *heap;
 };
 
 /* The four passes of the gmlg: what room there is; collide and fall; who is let in; stream. */
@@ -98,7 +115,7 @@ struct lga_row_gmlg {
     const struct lga_dice *dice;
     const uint64_t *in, *wall;
     const uint64_t *full[LGA_DIRECTIONS];       /* of the neighbours that are not above */
-    uint64_t *out;
+    uint64_t *out, *hits;
 };
 
 struct lga_row_admit {
@@ -133,6 +150,8 @@ struct lga_kernel {
     uint64_t (*stream_any)(const struct lga_row_stream *row);
     uint64_t (*stop)(const struct lga_row_stop *row);
     void (*fall)(const struct lga_row_fall *row);
+    uint64_t (*stream_heap)(const struct lga_row_stream *row);
+    void (*bind)(const struct lga_row_bind *row);
     void (*survey)(const struct lga_row_survey *row);
     uint64_t (*gmlg_free)(const struct lga_row_gmlg *row);
     uint64_t (*gmlg_level)(const struct lga_row_gmlg *row);
@@ -142,11 +161,12 @@ struct lga_kernel {
     uint64_t (*arrive)(const struct lga_row_arrive *row);
 };
 
-/* lga_bits_sand.c: the sandpile before its rows are streamed. */
+/* lga_bits_sand.c: the sandpile before its rows are streamed, and its heap after that. */
 bool lga_bits_sand_allocate(struct lga *lga);
 uint64_t lga_bits_sand_stop(struct lga *lga, const struct lga_kernel *kernel);
 void lga_bits_sand_fall(const struct lga *lga, const struct lga_kernel *kernel, uint32_t row,
                         uint64_t *out, uint64_t *scratch);
+void lga_bits_sand_settle(struct lga *lga, const struct lga_kernel *kernel);
 
 /* lga_bits_gmlg.c */
 bool lga_bits_gmlg_allocate(struct lga *lga);
@@ -162,10 +182,13 @@ void lga_bits_rasterise(struct lga *lga, double t);     /* all that from the sce
 
 struct lga_node lga_bits_node(const struct lga *lga, uint32_t site);
 uint64_t *lga_bits_row(const struct lga *lga, uint32_t row);    /* its first plane */
-void lga_bits_trim(const struct lga *lga, uint32_t row);    /* clears what is behind the columns */
+void lga_bits_trim(const struct lga *lga, uint32_t row);    /* clears the copy of the first one */
+void lga_bits_clean(const struct lga *lga, uint32_t row);   /* and all that is behind the columns */
 uint32_t lga_bits_band(const struct lga *lga, uint32_t band);   /* its first row */
 int lga_bits_shift(uint32_t row, int direction);    /* columns to the neighbour there */
 uint64_t *lga_bits_wall(const struct lga *lga, uint32_t row);   /* with margins */
+uint64_t *lga_bits_heap(const struct lga *lga, uint32_t row);   /* the same */
+bool lga_bits_allocate_real(struct lga *lga);
 void lga_bits_join(const struct lga *lga, uint64_t *row);       /* fills the margins of a row */
 void lga_bits_set(struct lga *lga, uint32_t site, unsigned moving, unsigned rest);
 

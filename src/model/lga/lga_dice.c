@@ -32,6 +32,14 @@ struct lga_die lga_dice_die(double probability)
     return (struct lga_die){probability > 0.5, 0};
 }
 
+/* One of up to six, all alike. */
+static void set_pick(struct lga_dice *dice)
+{
+    dice->of[LGA_DIE_PICK_THIRD] = lga_dice_die(1 / 3.0);
+    dice->of[LGA_DIE_PICK_FIFTH] = lga_dice_die(1 / 5.0);
+    dice->of[LGA_DIE_PICK_COIN] = dice->of[LGA_DIE_PICK_SECOND] = lga_dice_die(0.5);
+}
+
 static struct lga_dice dice_of_gmlg(const struct lga_rule *rule)
 {
     struct lga_dice dice = {0};
@@ -49,9 +57,9 @@ static struct lga_dice dice_of_gmlg(const struct lga_rule *rule)
     if (!rule->vertical) dice.of[LGA_DIE_BEND_SIDE] = lga_dice_die(0.5);
     dice.of[LGA_DIE_FRICTION_LEFT] = lga_dice_die(rule->friction);
     dice.of[LGA_DIE_FRICTION_RIGHT] = lga_dice_die(rule->friction);
-    dice.of[LGA_DIE_PICK_THIRD] = dice.of[LGA_DIE_ADMIT_THIRD] = lga_dice_die(1 / 3.0);
-    dice.of[LGA_DIE_PICK_FIFTH] = dice.of[LGA_DIE_ADMIT_FIFTH] = lga_dice_die(1 / 5.0);
-    dice.of[LGA_DIE_PICK_COIN] = dice.of[LGA_DIE_PICK_SECOND] = lga_dice_die(0.5);
+    set_pick(&dice);
+    dice.of[LGA_DIE_ADMIT_THIRD] = lga_dice_die(1 / 3.0);
+    dice.of[LGA_DIE_ADMIT_FIFTH] = lga_dice_die(1 / 5.0);
     for (int k = 0; k < 6; k++) dice.of[LGA_DIE_ADMIT_COIN + k] = lga_dice_die(0.5);
     return dice;
 }
@@ -69,6 +77,7 @@ struct lga_dice lga_dice_of(const struct lga_rule *rule)
     if (gravity && sandpile && rule->fly) {
         dice.of[LGA_DIE_BEND] = lga_dice_die(rule->fall);
         dice.of[LGA_DIE_BEND_SIDE] = lga_dice_die(0.5);
+        set_pick(&dice);
     }
     dice.of[LGA_DIE_MIRROR] = lga_dice_die(rule->smooth);
     if (rule->heap) dice.of[LGA_DIE_PLATE] = lga_dice_die(rule->loss);

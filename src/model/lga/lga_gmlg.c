@@ -26,9 +26,6 @@ static bool is_full(const struct lga *lga, uint32_t site)
         || (lga->kind[site] == LGA_FLUID && lga->load[site] >= LGA_ROOM);
 }
 
-/* 0, 1 or 2, alike. */
-static int one_of_three(bool third, bool coin) { return third ? 0 : coin ? 1 : 2; }
-
 /* Which outcome of its collision a node takes: of three or six the way in which pairs stop comes
  * first, then the way in which what they leave merges. */
 static int outcome_of(const struct lga *lga, uint32_t site, int count)
@@ -36,7 +33,7 @@ static int outcome_of(const struct lga *lga, uint32_t site, int count)
     const int second = !die(lga, site, LGA_DIE_SIDE);
     if (count <= 2) return count == 2 ? second : 0;
     assert(count % 3 == 0);
-    const int way = one_of_three(die(lga, site, LGA_DIE_WAY_THIRD),
+    const int way = lga_plain_third(die(lga, site, LGA_DIE_WAY_THIRD),
                                  die(lga, site, LGA_DIE_WAY_SIDE));
     return count == 3 ? way : 2 * way + second;
 }
@@ -80,31 +77,6 @@ static void fall(struct lga *lga, uint32_t site)
     lga->moving[site] |= (uint8_t)bit(direction);
 }
 
-/* The rank of one of `count` things, all with equal chance. */
-struct pick { bool third, fifth, coin, second; };
-
-static int pick(int count, struct pick dice)
-{
-    const int of_four = 2 * dice.coin + dice.second;
-    switch (count) {
-    case 1: return 0;
-    case 2: return dice.coin;
-    case 3: return one_of_three(dice.third, dice.coin);
-    case 4: return of_four;
-    case 5: return dice.fifth ? 4 : of_four;
-    default: assert(count == 6);
-    }
-    return 2 * one_of_three(dice.third, dice.coin) + dice.second;
-}
-
-/* The direction of that rank in a set. */
-static int member(unsigned set, int rank)
-{
-    int d = 0;
-    while (!(set & bit(d)) || rank-- > 0) d++;
-    return d;
-}
-
 /* Gravity on one mover of the node, any of them: its path bends down.  H: 4 and 5 are drawn anew,
  * 1 -> 5 and 2 -> 4 keep the momentum along x. */
 static void bend(struct lga *lga, uint32_t site)
@@ -113,10 +85,7 @@ static void bend(struct lga *lga, uint32_t site)
     static const int down_level[LGA_DIRECTIONS] = {5, 5, 4, 4, -1, -1};
     const unsigned moving = lga->moving[site];
     if (moving == 0 || !die(lga, site, LGA_DIE_BEND)) return;
-    const struct pick dice = {die(lga, site, LGA_DIE_PICK_THIRD),
-        die(lga, site, LGA_DIE_PICK_FIFTH), die(lga, site, LGA_DIE_PICK_COIN),
-        die(lga, site, LGA_DIE_PICK_SECOND)};
-    const int from = member(moving, pick(__builtin_popcount(moving), dice));
+    const int from = lga_plain_mover(lga, site);
     int to = lga->rule.vertical ? down_vertical[from] : down_level[from];
     if (to < 0) to = die(lga, site, LGA_DIE_BEND_SIDE) ? 4 : 5;
     if (moving & bit(to) || is_full(lga, lga->beside[site][to])) return;
@@ -134,10 +103,10 @@ static unsigned let_in(const struct lga *lga, uint32_t site, unsigned waiting, i
     const int picks = refuse ? excess : room;
     unsigned left = waiting;
     for (int k = 0; k < picks; k++) {
-        const struct pick dice = {die(lga, site, LGA_DIE_ADMIT_THIRD),
+        const struct lga_pick dice = {die(lga, site, LGA_DIE_ADMIT_THIRD),
             die(lga, site, LGA_DIE_ADMIT_FIFTH), die(lga, site, LGA_DIE_ADMIT_COIN + 2 * k),
             die(lga, site, LGA_DIE_ADMIT_COIN + 2 * k + 1)};
-        left &= ~bit(member(left, pick(__builtin_popcount(left), dice)));
+        left &= ~bit(lga_plain_pick(left, dice));
     }
     return refuse ? left : waiting & ~left;
 }
@@ -169,13 +138,16 @@ void lga_gmlg_collide(struct lga *lga)
     }
     #pragma omp parallel for reduction(+ : collisions) if (sites >= LGA_LOOP_MIN)
     for (uint32_t n = 0; n < sites; n++) {
+        lga->admitted[n] = 0;
         if (lga->kind[n] != LGA_FLUID || lga->load[n] == 0) continue;
         lga->hit[n] = lga->moving[n] != 0;
-        collisions += collide(lga, n);
+        lga->admitted[n] = collide(lga, n);
+        collisions += lga->admitted[n];
         if (!lga->rule.gravity) continue;
         fall(lga, n);
         bend(lga, n);
     }
+    lga_plain_note(lga);
     #pragma omp parallel for if (sites >= LGA_LOOP_MIN)
     for (uint32_t n = 0; n < sites; n++) {
         lga->admitted[n] = lga->kind[n] == LGA_FLUID ? (uint8_t)admit(lga, n) : 0;

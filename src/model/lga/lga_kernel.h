@@ -91,6 +91,26 @@ INLINE uint64_t N(count)(vec bits)
     return sum;
 }
 
+INLINE bool N(any)(vec bits)
+{
+    uint64_t sum = 0;
+    for (int k = 0; k < KERNEL_WIDTH; k++) sum |= bits[k];
+    return sum != 0;
+}
+
+/* Counts the collisions of a vector of nodes: adds a bit to the number of each, up to the last. */
+INLINE void N(note)(uint64_t *number, uint32_t words, uint32_t w, vec hit)
+{
+    for (uint32_t k = 0; k < LGA_RATE_DIGITS; k++) {
+        const vec digit = N(load)(number + k * words + w);
+        N(store)(number + k * words + w, digit ^ hit);
+        hit &= digit;
+    }
+    for (uint32_t k = 0; k < LGA_RATE_DIGITS && N(any)(hit); k++) {
+        N(store)(number + k * words + w, N(load)(number + k * words + w) | hit);
+    }
+}
+
 /* Collides the movers m of a vector of nodes without loss; the table is that of lga_table.c as
  * logic.  Rest grains are kicked up where they can, *splits, and added where there is room,
  * *merges.  Returns which nodes have changed. */
@@ -177,13 +197,16 @@ INLINE uint64_t N(collide_effects)(const struct lga_row_collide *row, unsigned e
             }
             const vec hit = N(collide)(m, &r, side[p], effects & LGA_BITS_LOSS ? kick[p] : all);
             collisions += N(count)(hit);
+            if (row->hits) N(note)(row->hits, words, w, hit);
             if (effects & LGA_BITS_GRAVITY) {
                 N(fall)(m, &r, falls[p], left[p], N(load)(row->wall_left + w),
                         N(load)(row->wall_right + w));
             }
             for (uint32_t d = 0; d < 6; d++) N(store)(row->out + d * row->stride + w, m[d]);
             N(store)(row->out + 6 * row->stride + w, r);
-            if (effects & LGA_BITS_MIRROR) N(store)(row->out + 7 * row->stride + w, mirror[p]);
+            if (effects & LGA_BITS_MIRROR) {
+                N(store)(row->out + LGA_PLANE_MIRROR * row->stride + w, mirror[p]);
+            }
         }
     }
     return collisions;
@@ -217,100 +240,8 @@ INLINE uint64_t N(stream_effects)(const struct lga_row_stream *row, unsigned eff
     return left;
 }
 
-/* --- sandpile --- */
-
-/* Collides a row in its place; lossy pairs and triples stop, and their surplus is noted. */
-KERNEL_TARGET static uint64_t N(stop)(const struct lga_row_stop *row)
-{
-    const uint32_t words = row->words;
-    uint64_t collisions = 0;
-    struct N(stream) s;
-    N(seed)(&s, row->key);
-    for (uint32_t block = 0; block < words; block += LGA_LANES) {
-        vec side[PARTS], kick[PARTS], loss[PARTS];
-        N(roll)(&s, row->dice->of[LGA_DIE_SIDE], side);
-        N(roll)(&s, row->dice->of[LGA_DIE_KICK], kick);
-        N(roll)(&s, row->dice->of[LGA_DIE_LOSS], loss);
-        for (int p = 0; p < PARTS; p++) {
-            const uint32_t w = block + (uint32_t)p * KERNEL_WIDTH;
-            vec m[6], caught[7] = {{0}}, r = N(load)(row->planes + 6 * words + w);
-            for (uint32_t d = 0; d < 6; d++) m[d] = N(load)(row->planes + d * words + w);
-            if (row->held) {
-                const vec wall = N(load)(row->wall + w);
-                for (int d = 0; d < 6; d++) caught[d] = m[d] & wall;
-                for (int d = 0; d < 6; d++) m[d] &= ~wall;
-                caught[6] = r & wall;
-                r &= ~wall;
-            }
-            vec pair = {0}, none[3], left[3], right[3];
-            for (int i = 0; i < 3; i++) {
-                none[i] = ~(m[i] | m[i + 3]);
-                left[i] = m[i] & ~m[i + 3];
-                right[i] = m[i + 3] & ~m[i];
-            }
-            for (int i = 0; i < 3; i++) {
-                pair |= m[i] & m[i + 3] & none[(i + 1) % 3] & none[(i + 2) % 3];
-            }
-            pair &= loss[p];
-            const vec triple = ((left[0] & left[2] & right[1]) | (right[0] & right[2] & left[1]))
-                             & loss[p];
-            const vec stops = pair | triple, rested = r;
-            for (int d = 0; d < 6; d++) m[d] &= ~stops;
-            const vec hit = N(collide)(m, &r, side[p], kick[p]) | stops;
-            collisions += N(count)(hit);
-            N(store)(row->low + w, (pair & ~rested) | (triple & rested));
-            N(store)(row->high + w, (pair & rested) | triple);
-            for (uint32_t d = 0; d < 6; d++) {
-                N(store)(row->planes + d * words + w, m[d] | caught[d]);
-            }
-            N(store)(row->planes + 6 * words + w, r | stops | caught[6]);
-        }
-    }
-    return collisions;
-}
-
-/* Rest grains start down, where no other lies; which movers are to be bent is only noted. */
-KERNEL_TARGET static void N(fall_row)(const struct lga_row_fall *row)
-{
-    const uint32_t words = row->words;
-    struct N(stream) s;
-    N(seed)(&s, row->key);
-    for (uint32_t block = 0; block < words; block += LGA_LANES) {
-        vec falls[PARTS], left[PARTS], bend[PARTS], bend_side[PARTS], mirror[PARTS];
-        N(roll)(&s, row->dice->of[LGA_DIE_FALL], falls);
-        N(roll)(&s, row->dice->of[LGA_DIE_FALL_SIDE], left);
-        N(roll)(&s, row->dice->of[LGA_DIE_BEND], bend);
-        N(roll)(&s, row->dice->of[LGA_DIE_BEND_SIDE], bend_side);
-        N(roll)(&s, row->dice->of[LGA_DIE_MIRROR], mirror);
-        for (int p = 0; p < PARTS; p++) {
-            const uint32_t w = block + (uint32_t)p * KERNEL_WIDTH;
-            vec m[6], r = N(load)(row->in + 6 * words + w), any = {0};
-            for (uint32_t d = 0; d < 6; d++) m[d] = N(load)(row->in + d * words + w);
-            if (row->held) {
-                const vec fluid = ~N(load)(row->wall + w);
-                for (int d = 0; d < 6; d++) m[d] &= fluid;
-                r &= fluid;
-            }
-            const vec starts = r & falls[p];
-            const vec shut_left = N(load)(row->wall_left + w) | N(load)(row->taken_left + w);
-            const vec shut_right = N(load)(row->wall_right + w) | N(load)(row->taken_right + w);
-            const vec goes_left = starts & left[p] & ~m[4] & ~shut_left;
-            const vec goes_right = starts & ~left[p] & ~m[5] & ~shut_right;
-            m[4] |= goes_left;
-            m[5] |= goes_right;
-            for (uint32_t d = 0; d < 6; d++) {
-                any |= m[d];
-                N(store)(row->out + d * row->stride + w, m[d]);
-            }
-            N(store)(row->out + 6 * row->stride + w, r & ~(goes_left | goes_right));
-            N(store)(row->out + 7 * row->stride + w, mirror[p]);
-            N(store)(row->bend + w, bend[p] & any);
-            N(store)(row->bend_side + w, bend_side[p]);
-        }
-    }
-}
-
 #include "model/lga/lga_kernel_gmlg.h"
+#include "model/lga/lga_kernel_sand.h"
 
 #define INSTANCE(kind, e) \
     KERNEL_TARGET static uint64_t N(kind##_##e)(const struct lga_row_##kind *row) \
@@ -346,7 +277,7 @@ KERNEL_TARGET static uint64_t N(gmlg_any)(const struct lga_row_gmlg *row)
 static const struct lga_kernel N(kernel) = {
     N(roll_row), {N(collide_0), N(collide_1), N(collide_2), N(collide_3)}, N(collide_any),
     {N(stream_0), N(stream_4)}, N(stream_any),
-    N(stop), N(fall_row),
+    N(stop), N(fall_row), N(stream_heap), N(bind),
     N(survey), N(gmlg_free), N(gmlg_level), N(gmlg_vertical), N(gmlg_any), N(admit), N(arrive)
 };
 

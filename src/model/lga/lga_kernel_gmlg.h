@@ -26,13 +26,6 @@ INLINE void N(subtract_bit)(vec number[3], vec bit)
 
 INLINE vec N(is_zero)(const vec number[3]) { return ~(number[0] | number[1] | number[2]); }
 
-INLINE bool N(any)(vec bits)
-{
-    uint64_t sum = 0;
-    for (int k = 0; k < KERNEL_WIDTH; k++) sum |= bits[k];
-    return sum != 0;
-}
-
 /* How many of the planes are set. */
 INLINE uint64_t N(count_six)(const vec planes[6])
 {
@@ -291,8 +284,10 @@ INLINE uint64_t N(gmlg_effects)(const struct lga_row_gmlg *row, unsigned effects
             }
             for (int d = 0; d < 6; d++) had_movers |= m[d];
             const vec way[2] = {rolled.way[0][p], rolled.way[1][p]};
-            collisions += N(count)(N(collide_gmlg)(m, rest, rolled.side[p], rolled.kick[p],
-                                                   rolled.loss[p], way, tight));
+            const vec hit = N(collide_gmlg)(m, rest, rolled.side[p], rolled.kick[p],
+                                            rolled.loss[p], way, tight);
+            collisions += N(count)(hit);
+            if (row->hits) N(note)(row->hits, words, w, hit);
             if (gravity) {
                 N(fall_gmlg)(row, &rolled, w, p, had_movers, effects & LGA_BITS_VERTICAL, m, rest);
             }

@@ -9,11 +9,7 @@
  */
 #include "model/lga/lga.h"
 
-#include "base/rng.h"
-
 #include <assert.h>
-
-enum { DRAW_MOVER = 64 };
 
 static unsigned bit(int direction) { return 1u << direction; }
 
@@ -42,13 +38,13 @@ static void spread(struct lga *lga, uint32_t site, bool heap)
 }
 
 /* In the order of the fast form: word by word, bit by bit. */
-static void spread_row(struct lga *lga, uint32_t row)
+static void spread_row(struct lga *lga, uint32_t row, bool heap)
 {
     const uint32_t columns = lga->lattice.columns;
     for (uint32_t w = 0; w < lga->words; w++) {
         for (uint32_t x = w; x < columns; x += lga->words) {
             const uint32_t n = row * columns + x;
-            if (lga->kind[n] == LGA_FLUID) spread(lga, n, false);
+            if (lga->kind[n] == LGA_FLUID) spread(lga, n, heap);
         }
     }
 }
@@ -86,16 +82,6 @@ static void fall_sand(struct lga *lga, uint32_t site)
     if (lga->kind[to] == LGA_FLUID && lga->load[to] & forbidden) return;
     lga->rest[site]--;
     lga->moving[site] |= (uint8_t)bit(d);
-    if (lga->heap) lga->heap[site] = false;
-}
-
-int lga_sand_bend(const struct lga *lga, uint32_t site, unsigned moving, bool left, int *from)
-{
-    static const int down[LGA_DIRECTIONS] = {5, 5, 4, 4, -1, -1};
-    const double u = rng_unit(rng_keyed(lga->seed, lga->ticks, site, DRAW_MOVER));
-    int before = (int)(u * __builtin_popcount(moving));
-    for (*from = 0; !(moving & bit(*from)) || before-- > 0; (*from)++) continue;
-    return down[*from] < 0 ? (left ? 4 : 5) : down[*from];
 }
 
 /* Sandpile: one of the movers bends down, unless a rest grain is in the way. */
@@ -103,9 +89,9 @@ static void bend_sand(struct lga *lga, uint32_t site)
 {
     const unsigned moving = lga->moving[site];
     if (moving == 0 || !lga_plain_die(lga, LGA_DIE_BEND, site)) return;
-    int from;
-    const bool left = lga_plain_die(lga, LGA_DIE_BEND_SIDE, site);
-    const int to = lga_sand_bend(lga, site, moving, left, &from);
+    static const int down[LGA_DIRECTIONS] = {5, 5, 4, 4, -1, -1};
+    const int from = lga_plain_mover(lga, site);
+    const int to = down[from] < 0 ? downward(lga, LGA_DIE_BEND_SIDE, site) : down[from];
     const uint32_t below = lga->beside[site][to];
     if (lga->kind[below] == LGA_FLUID && lga->load[below] & LOAD_RESTS) return;
     if (moving & bit(to)) return;
@@ -131,9 +117,13 @@ void lga_sand_collide(struct lga *lga)
     lga_plain_roll(lga);
     #pragma omp parallel for reduction(+ : collisions) if (sites >= LGA_LOOP_MIN)
     for (uint32_t n = 0; n < sites; n++) {
-        if (lga->kind[n] == LGA_FLUID && lga->moving[n]) collisions += collide(lga, n);
+        lga->admitted[n] = lga->kind[n] == LGA_FLUID && lga->moving[n] && collide(lga, n);
+        collisions += lga->admitted[n];
     }
-    for (uint32_t row = 0; row < lga->lattice.rows && sandpile; row++) spread_row(lga, row);
+    lga_plain_note(lga);
+    for (uint32_t row = 0; row < lga->lattice.rows && sandpile; row++) {
+        spread_row(lga, row, false);
+    }
     #pragma omp parallel for if (sites >= LGA_LOOP_MIN)
     for (uint32_t n = 0; n < sites; n++) {
         lga->load[n] = (uint8_t)((lga->rest[n] ? LOAD_RESTS : 0)
@@ -153,16 +143,18 @@ void lga_sand_collide(struct lga *lga)
     lga->collisions += collisions;
 }
 
-/* A mover that comes to the heap stops and stays with it; so does a rest grain that lies on two
- * grains of the heap, or on the floor. */
+/* A mover that comes to the heap stops; what is more than one grain walks, and is part of the heap
+ * where it comes to rest.  So is, from below, a rest grain that lies on two grains of the heap or
+ * on the floor.  A node of the heap whose grain has gone is one no more. */
 void lga_sand_settle(struct lga *lga)
 {
     for (uint32_t n = 0; n < lga->sites; n++) {
-        if (lga->kind[n] != LGA_FLUID || !lga->heap[n]) continue;
+        lga->heap[n] &= lga->kind[n] == LGA_FLUID && lga->rest[n] > 0;
+        if (!lga->heap[n]) continue;
         lga->rest[n] = (uint8_t)(lga->rest[n] + __builtin_popcount(lga->moving[n]));
         lga->moving[n] = 0;
-        spread(lga, n, true);
     }
+    for (uint32_t row = 0; row < lga->lattice.rows; row++) spread_row(lga, row, true);
     for (uint32_t n = 0; n < lga->sites; n++) {
         if (lga->kind[n] != LGA_FLUID || !lga->rest[n]) continue;
         const uint32_t left = lga->beside[n][4], right = lga->beside[n][5];

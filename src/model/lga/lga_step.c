@@ -118,13 +118,14 @@ void lga_step(struct lga *lga)
 {
     if (lga->bits) {
         lga_bits_step(lga);
-        return;
+    } else {
+        if (lga->rule.method == LGA_GMLG) lga_gmlg_collide(lga);
+        else lga_sand_collide(lga);
+        stream_all(lga);
+        if (lga->heap) lga_sand_settle(lga);
     }
-    if (lga->rule.method == LGA_GMLG) lga_gmlg_collide(lga);
-    else lga_sand_collide(lga);
-    stream_all(lga);
-    if (lga->heap) lga_sand_settle(lga);
     lga->ticks++;
+    lga_rate_end_tick(lga);
 }
 
 double lga_step_time(const struct lga *lga)
@@ -150,11 +151,6 @@ static bool allocate_plain(struct lga *lga)
     return lga_plain_allocate(lga) && (gmlg || lga_sand_allocate(lga));
 }
 
-bool lga_step_is_fast(const struct lga_rule *rule)
-{
-    return rule->method != LGA_SANDPILE || !rule->heap;
-}
-
 bool lga_step_allocate(struct lga *lga)
 {
     struct arena *arena = &lga->arena;
@@ -165,6 +161,6 @@ bool lga_step_allocate(struct lga *lga)
     if (!arena_array(arena, &lga->table, 1) || !arena_array(arena, &lga->queue, lga->queue_length)
         || !arena_array(arena, &lga->seen, lga->sites / 64 + 1)) return false;
     lga_table_fill(lga->table);
-    const bool fast = lga_step_is_fast(&lga->rule) && !lga->plain;
-    return fast ? lga_bits_allocate(lga) : allocate_plain(lga);
+    if (!lga_rate_allocate(lga)) return false;
+    return lga->plain ? allocate_plain(lga) : lga_bits_allocate(lga);
 }

@@ -9,6 +9,8 @@
 
 #include "base/rng.h"
 
+#include <assert.h>
+
 enum { HOPS_MAX = 1 << 12 };
 
 /* The bit of a node in rows of `stride` words. */
@@ -22,7 +24,7 @@ static uint64_t *word_of(const struct lga *lga, uint64_t *rows, size_t stride, u
 enum found { WALKS_ON, RESTS, SINKS, BLOCKED };
 
 /* Tries a node of the fast form. */
-static enum found try_bits(struct lga *lga, uint32_t row, uint32_t x)
+static enum found try_bits(struct lga *lga, uint32_t row, uint32_t x, bool heap)
 {
     const struct lga_bits *bits = lga->bits;
     uint64_t bit;
@@ -32,6 +34,7 @@ static enum found try_bits(struct lga *lga, uint32_t row, uint32_t x)
                              (size_t)LGA_PLANES * bits->words, row, x, &bit);
     if (*rest & bit) return WALKS_ON;
     *rest |= bit;
+    if (heap) *word_of(lga, bits->heap + LGA_LANES, bits->stride, row, x, &bit) |= bit;
     return RESTS;
 }
 
@@ -57,7 +60,7 @@ static bool walk(struct lga *lga, struct rng *rng, uint32_t row, uint32_t x, boo
                             : shift > 0 ? (x + 1 == columns ? 0 : x + 1) : x;
         const uint32_t to_row = dy[d] < 0 ? (row ? row : rows) - 1
                               : dy[d] > 0 ? (row + 1 == rows ? 0 : row + 1) : row;
-        const enum found found = lga->bits ? try_bits(lga, to_row, to_x)
+        const enum found found = lga->bits ? try_bits(lga, to_row, to_x, heap)
                                            : try_bytes(lga, to_row * columns + to_x, heap);
         if (found == BLOCKED) continue;
         lga->grains_out += found == SINKS;
@@ -74,11 +77,9 @@ void lga_walk(struct lga *lga, uint32_t site, uint32_t surplus, bool heap)
     for (; surplus > 0; surplus--) {
         const uint32_t row = site / lga->lattice.columns, x = site % lga->lattice.columns;
         if (walk(lga, &rng, row, x, heap)) continue;
-        /* No place anywhere near: on it flies.  What was brought to rest has left slots free; in a
-         * heap that is full to the last node it may pile up here. */
-        struct lga_node node = lga_node_get(lga, site);
-        if (node.moving + 1 < LGA_STATES) node.moving |= (uint8_t)(node.moving + 1);
-        else node.rest++;
-        lga_node_set(lga, site, node.moving, node.rest);
+        /* No place anywhere near: on it flies.  What was brought to rest has left slots free. */
+        const struct lga_node node = lga_node_get(lga, site);
+        assert(node.moving + 1 < LGA_STATES);
+        lga_node_set(lga, site, node.moving | (node.moving + 1u), node.rest);
     }
 }
