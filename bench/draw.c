@@ -26,7 +26,8 @@ int main(int argc, char **argv)
             }
             printf("%8u %-8s %-12s %7.0f %7.0f %7.1f %8.1f %9zu\n", counts[k],
                    by_gl ? "gl" : "splatter", shade ? "rims, shade" : rims ? "rims" : "plain",
-                   result.create_ms, result.first_ms, result.paint_ms, result.encode_ms, result.bytes);
+                   result.create_ms, result.first_ms, result.paint_ms, result.encode_ms,
+                   result.bytes);
             fflush(stdout);
         }
     }
