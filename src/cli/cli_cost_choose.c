@@ -107,8 +107,8 @@ bool cli_cost_choose(struct options *options, json_t **table, struct error *erro
     if (!*table) return false;
     const json_t *point = choose(json_object_get(*table, "points"), accuracy, budget);
     if (!point) {
-        return error_set_code(error, EXIT_VERDICT, "%s holds no setting %s%s%s%s", path,
-            accuracy_text ? "within " : "", accuracy_text ? accuracy_text : "",
+        return error_set_code(error, EXIT_VERDICT, "%s holds no setting%s%s%s%s", path,
+            accuracy_text ? " within " : "", accuracy_text ? accuracy_text : "",
             budget_text ? " in " : "", budget_text ? budget_text : "");
     }
     size_t index;
