@@ -101,10 +101,9 @@ static bool is_chosen(const struct setup *chosen, const char *path, const char *
     return key && key_choice(key->choices, word) == *choice;
 }
 
-static bool add_key(const struct setup *chosen, const char *word, struct cost_point *point)
+bool cost_settings_key(const char *word, const struct setup *chosen, char text[COST_KEY])
 {
     const char *value = strchr(word, '=');
-    char *text = point->keys[point->key_count++];
     const bool computed = value && (value[1] == '*' || strcmp(value, "=hertz") == 0
                                     || strcmp(value, "=linear") == 0)
                        && strncmp(word, "md.force", 8) != 0;
@@ -129,7 +128,7 @@ bool cost_settings_keys(const char *setting, const struct setup *chosen, struct 
     for (char *word = strtok_r(words, " ", &save); word; word = strtok_r(NULL, " ", &save)) {
         if (point->key_count == COST_KEYS) return false;
         if (point->key_count > 0) {
-            if (!add_key(chosen, word, point)) return false;
+            if (!cost_settings_key(word, chosen, point->keys[point->key_count++])) return false;
         } else {
             snprintf(point->keys[point->key_count++], COST_KEY, "model=%s", word);
         }

@@ -17,6 +17,9 @@ const char *cost_settings_model(const char *setting, char *name, size_t size);
  * False: there is no such value here, so the setting is none. */
 bool cost_settings_keys(const char *setting, const struct setup *chosen, struct cost_point *point);
 
+/* One key "PATH=VALUE" of a setting as the override `text`; false if there is no such value. */
+bool cost_settings_key(const char *word, const struct setup *chosen, char text[COST_KEY]);
+
 /* The time step of the model; NAN if it takes none. */
 double cost_settings_step(const struct setup *setup);
 

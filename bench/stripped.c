@@ -71,7 +71,8 @@ static void sort_bodies(struct gas *g)
         struct body *b = &g->bodies[i];
         b->x -= SIDE * floor(b->x / SIDE);
         b->y -= SIDE * floor(b->y / SIDE);
-        const uint32_t cx = (uint32_t)(b->x * (CELLS / SIDE)), cy = (uint32_t)(b->y * (CELLS / SIDE));
+        const uint32_t cx = (uint32_t)(b->x * (CELLS / SIDE));
+        const uint32_t cy = (uint32_t)(b->y * (CELLS / SIDE));
         g->cell_of[i] = (cx < CELLS ? cx : CELLS - 1) * CELLS + (cy < CELLS ? cy : CELLS - 1);
         first[g->cell_of[i] + 1]++;
     }

@@ -6,7 +6,14 @@ SPDX-License-Identifier: GPL-3.0-or-later
 import csv
 import json
 import os
+import shutil
 import struct
+import subprocess
+
+try:
+    import h5py
+except ImportError:
+    h5py = None
 
 # Discs that fall on an obstacle; friction, a phase that changes a key, and a gate that opens.
 DISCS = """
@@ -25,10 +32,14 @@ output = { frames = 0.1; log = 0.05; maps = 0.4; checkpoint = 0.15; checkpoint_w
 _QUICK = ["--quick", "--size", "160x120", "-s", "output.checkpoint_wall=0"]
 DISCS_FILE = "discs.cfg"
 
+# Movies are bytes of ffmpeg, which makes the same of the same frames on any number of threads.
+_FILM = ["-s", "output.movie=film.mp4"] if shutil.which("ffmpeg") else []
+
 # name, scene, options.  Together they have every model and method, and every kind of output:
-# frames coloured by the whole run and at once, dumps with contacts, maps, mean maps, screens.
+# frames coloured by the whole run and at once, dumps with contacts, maps, mean maps, screens,
+# movies; trajectories by cases().
 CASES = [
-    ("md-linear-verlet", DISCS_FILE, []),
+    ("md-linear-verlet", DISCS_FILE, _FILM),
     ("md-hertz-verlet", DISCS_FILE, ["-s", "md.force=hertz", "-s", "output.dump=true",
                                  "-s", "output.contacts=true", "-s", "view.forces=true"]),
     ("md-linear-gear", DISCS_FILE, ["-s", "md.integrator=gear", "-s", "view.range=(0, 5)"]),
@@ -37,7 +48,8 @@ CASES = [
     ("md-stream", "obstacle", [*_QUICK, "--model", "md", "--until", "0.004", "-s",
                                "output.frames=0.001", "-s", "output.checkpoint=0.0008"]),
     ("ed-tc", "cooling", [*_QUICK, "--model", "ed", "--until", "30", "-s", "output.checkpoint=4"]),
-    ("ed-walls", DISCS_FILE, ["--model", "ed", "-s", "view.range=(0, 5)", "-s", "output.dump=true"]),
+    ("ed-walls", DISCS_FILE, ["--model", "ed", "-s", "view.range=(0, 5)", "-s", "output.dump=true",
+                              *_FILM]),
     ("ed-plain", "cooling", [*_QUICK, "--model", "ed", "--until", "20", "-s", "ed.t_c=0", "-s",
                              "output.checkpoint=3", "-s", "view.range_from=frame"]),
     ("dsmc-dense", "obstacle", [*_QUICK, "--model", "dsmc", "-s", "output.checkpoint=0.004",
@@ -53,6 +65,17 @@ CASES = [
     ("lga-sandpile", "pile", [*_QUICK, "--model", "lga", "--method", "sandpile", "-s",
                               "output.dump=true"]),
 ]
+
+
+def cases(program):
+    """CASES; where the program has HDF5, one of them with a trajectory."""
+    told = subprocess.run([program, "version", "--json"], capture_output=True, text=True,
+                          check=True).stdout
+    if "hdf5" not in json.loads(told):
+        return CASES
+    return [(name, scene, options + ["-s", "output.trajectory=0.05"])
+            if name == "md-hertz-verlet" else (name, scene, options)
+            for name, scene, options in CASES]
 
 
 def write_scenes(folder):
@@ -100,7 +123,26 @@ def _log(data):
     return [row[:at] + row[at + 1:] for row in rows]
 
 
+def _trajectory(path):
+    """Every attribute and number of an HDF5 file; where it lies in the file is the library's
+    affair, which has holes where a killed run had begun a frame."""
+    found = {}
+
+    def take(name, item):
+        values = item[()].tobytes() if isinstance(item, h5py.Dataset) else None
+        shape = (item.shape, str(item.dtype)) if isinstance(item, h5py.Dataset) else None
+        found[name] = (shape, values, {k: repr(v) for k, v in item.attrs.items()})
+
+    with h5py.File(path, "r") as file:
+        file.visititems(take)
+    return found
+
+
 def _contents(path):
+    if path.endswith(".h5") and h5py:
+        return _trajectory(path)
+    if path.endswith(".h5"):
+        return os.path.getsize(path) > 0
     with open(path, "rb") as file:
         data = file.read()
     name = os.path.basename(path)

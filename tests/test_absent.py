@@ -1,5 +1,5 @@
-"""test_absent.py - an effect that is off leaves no trace: the result is bit for bit that of a build in
-which the effect does not exist, and no instruction of it runs.
+"""test_absent.py - an effect that is off leaves no trace: the result is bit for bit that of a build
+in which the effect does not exist, and no instruction of it runs.
 
 SPDX-License-Identifier: GPL-3.0-or-later
 
@@ -53,10 +53,11 @@ class Absent(unittest.TestCase):
         self.assertGreater(sum(int(line.split()[3]) for line in lines), 500)
 
     def test_the_other_build_really_lacks_the_effects(self):
-        # It would take a friction for nothing: its grains go as if there were none.
-        smooth = run(USUAL, "md verlet").split()[2:]
-        self.assertEqual(run(WITHOUT, "md friction").split()[2:], smooth)
-        self.assertNotEqual(run(USUAL, "md friction").split()[2:], smooth)
+        self.assertIn("md friction", run(USUAL, "md friction"))
+        done = subprocess.run([WITHOUT, "md friction"], capture_output=True, text=True,
+                              check=False, timeout=120)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("models that can run this scene: none", done.stderr)
 
     def test_what_is_off_runs_no_instruction(self):
         if not VALGRIND:

@@ -20,6 +20,7 @@ import tempfile
 import time
 import unittest
 
+import rundir
 import verdict
 
 PROGRAM = os.path.abspath(sys.argv.pop(1))
@@ -307,6 +308,19 @@ walls = ({ shape = "disc"; center = (20.0, 24.0); radius = 10.0; },
         self.refuse(1, "run", self.scene, "-o", "nowhere", "--resume")
         self.say("run", self.scene, "-o", "settled", "--resume", "--until", "0.5")
         self.assertEqual(len(glob.glob(self.path("settled/frames/*.png"))), 6)
+
+    def test_a_run_that_is_done_is_not_done_again(self):
+        self.say("run", self.scene, "-o", "ended", "--until", "0.3", "-s", "output.checkpoint=0")
+        before = rundir.everything(self.path("ended"))
+        self.assertNotIn("checkpoint", os.listdir(self.path("ended")))
+        for words in (["ended"], [self.scene, "-o", "ended", "--until", "0.3", "-s",
+                                  "output.checkpoint=0"]):
+            done = self.call("run", *words, "--resume")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("done already", done.stderr)
+        self.refuse(2, "run", "ended", "--resume", "--until", "0.5",
+                    words=["kept no checkpoint", "--force"])
+        self.assertEqual(rundir.everything(self.path("ended")), before)
 
     # Errors of the world
 

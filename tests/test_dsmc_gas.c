@@ -57,7 +57,7 @@ static void test_elastic_grains_collide_at_enskogs_rate(void **unused)
 static void test_grains_of_a_cell_collide_as_often_as_their_speeds_demand(void **unused)
 {
     (void)unused;
-    /* Ten collisions a step, and what one does to speeds counts for the others.  Three elastic discs
+    /* Ten collisions a step, and what one does to speeds counts for the rest.  Three elastic discs
      * share R^2 = sum (v - mean)^2 evenly in the four dimensions that are left to them.  A relative
      * velocity is sqrt(2) times a projection of that sphere onto a plane, which covers the disc of
      * radius R evenly, so that its mean is sqrt(2) 2/3 R. */

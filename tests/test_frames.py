@@ -3,7 +3,10 @@
 
 SPDX-License-Identifier: GPL-3.0-or-later
 """
+import glob
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -12,7 +15,13 @@ import unittest
 
 import rundir
 
+try:
+    import yaml
+except ImportError:
+    yaml = None
+
 PROGRAM = os.path.abspath(sys.argv.pop(1))
+CI_PAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "docs", "ci.md")
 LOOK = ["-t", "0.1", "--size", "160x120", "--forces", "--arrows", "--map", "density", "--theme",
         "dark", "--force", "--progress", "none"]
 
@@ -78,6 +87,47 @@ class Frames(unittest.TestCase):
             done = self.frame("now2.png", *words)
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertIn(told, done.stderr)
+
+    def examples(self):
+        """The two pipelines of docs/ci.md: their commands, and the files kept when one fails."""
+        with open(CI_PAGE, encoding="utf-8") as page:
+            github, gitlab = map(yaml.safe_load, re.findall(r"```yaml\n(.*?)```", page.read(), re.S))
+        job = github["jobs"]["figures"]
+        self.assertIn("runs-on", job)
+        self.assertIn(True, github, "'on', which YAML 1.1 takes for true")
+        steps = job["steps"]
+        for step in steps:
+            self.assertEqual(len({"uses", "run"} & set(step)), 1, step)
+        kept = [step for step in steps if step.get("if") == "failure()"]
+        yield [step["run"] for step in steps if "run" in step], [kept[0]["with"]["path"]]
+        job = gitlab["figures"]
+        self.assertIn("image", job)
+        self.assertEqual(job["artifacts"]["when"], "on_failure")
+        yield job["script"], job["artifacts"]["paths"]
+
+    @unittest.skipIf(yaml is None, "no python3-yaml: the examples of docs/ci.md are not tried")
+    def test_the_examples_of_pipelines_do_what_they_say(self):
+        for script, kept in self.examples():
+            self.assertEqual(script[0], "./bootstrap --yes build")
+            words = shlex.split(script[1])
+            self.assertEqual(words[0], "build/sandreel")
+            with tempfile.TemporaryDirectory(dir=self.folder) as place:
+                with open(os.path.join(place, "scene.cfg"), "w", encoding="utf-8") as out:
+                    out.write(rundir.DISCS)
+                os.mkdir(os.path.join(place, "figures"))
+                pipe = {"cwd": place, "capture_output": True, "text": True, "timeout": 120,
+                        "check": False}
+                subprocess.run([PROGRAM, "frame", "scene.cfg", "-t", "0.5", "-o",
+                                "figures/scene.png"], **pipe)
+                done = subprocess.run([PROGRAM, *words[1:]], **pipe)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                os.unlink(os.path.join(place, "now.png"))
+                with open(os.path.join(place, "scene.cfg"), "a", encoding="utf-8") as out:
+                    out.write("seed = 2;\n")
+                done = subprocess.run([PROGRAM, *words[1:]], **pipe)
+                self.assertEqual(done.returncode, 4, done.stderr)
+                found = {name for path in kept for name in glob.glob(path, root_dir=place)}
+                self.assertEqual(found, {"now.png", "now-difference.png"})
 
 
 if __name__ == "__main__":

@@ -87,7 +87,7 @@ class Trial:
 
 def try_moments(folder, moments):
     dice = random.Random(7)
-    trials = [Trial(folder, case) for case in rundir.CASES[:max(1, moments)]]
+    trials = [Trial(folder, case) for case in rundir.cases(PROGRAM)[:max(1, moments)]]
     killed = failed = 0
     for k in range(moments):
         trial = trials[k % len(trials)]

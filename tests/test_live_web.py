@@ -103,6 +103,8 @@ def test_requests_are_bounded(live):
     reply = live.command("x" * 900)
     assert not reply["ok"] and "no command" in reply["text"]
     assert not live.command("get \u00e4\n")["ok"]
+    _, data = live.ask("POST", live.path + "command", b"get t\xff\xc3")
+    assert not json.loads(data)["ok"] and "'t??'" in json.loads(data)["text"]
     assert live.command("")["ok"]
     # Many links that say nothing leave room for one that does.
     idle = [http.client.HTTPConnection("127.0.0.1", live.port) for _ in range(8)]

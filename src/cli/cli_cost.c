@@ -105,9 +105,11 @@ static json_t *describe(const struct cost_table *table)
                                 json_pack("[f, f]", p->errors[o], p->noise[o]));
         }
         json_array_append_new(points, json_pack(
-            "{s:s, s:o, s:f, s:f, s:f, s:f, s:o, s:b, s:b}", "setting", p->label, "keys", keys,
+            "{s:s, s:o, s:f, s:f, s:f, s:f, s:o, s:b, s:b, s:b}", "setting", p->label, "keys", keys,
             "wall_seconds", p->wall, "cpu_seconds", p->cpu, "error", p->error, "error_noise",
-            p->error_noise, "observables", errors, "front", p->front, "reference", p->reference));
+            p->error_noise, "observables", errors, "front", p->front,
+            "reference", p->reference, "cached",
+            p->cached));
     }
     json_t *orders = json_array();
     for (uint32_t k = 0; k < table->order_count; k++) {
@@ -238,8 +240,10 @@ static void find_range(const struct cost_table *table, double low[2], double hig
         high[1] = fmax(high[1], drawn(p) + p->error_noise);
     }
     for (int axis = 0; axis < 2; axis++) {
+        if (!(high[axis] > 0)) low[axis] = high[axis] = 1;              /* nothing ran */
         low[axis] = pow(10, floor(log10(low[axis])));
         high[axis] = pow(10, ceil(log10(high[axis]) + (axis == 0 ? 0.15 : 0)));
+        if (!(high[axis] > low[axis])) high[axis] = 10 * low[axis];     /* one point, or alike */
     }
 }
 
@@ -255,13 +259,13 @@ static bool draw(const struct cost_table *table, const char *directory, struct e
     chart.log_x = chart.log_y = true;
     double low[2], high[2];
     find_range(table, low, high);
-    if (high[0] > low[0] && high[1] > low[1]) {
-        memcpy(chart.x_range, (double[]){low[0], high[0]}, sizeof chart.x_range);
-        memcpy(chart.y_range, (double[]){low[1], high[1]}, sizeof chart.y_range);
-    }
+    chart.x_range[0] = low[0];
+    chart.x_range[1] = high[0];
+    chart.y_range[0] = low[1];
+    chart.y_range[1] = high[1];
     chart.key = "outside bottom center horizontal";
-    chart_curve(&chart, CHART_LINES, "nothing is faster and nearer");
     const struct cost_point *front = next_of_front(table, 0);
+    if (front) chart_curve(&chart, CHART_LINES, "nothing is faster and nearer");
     for (; front; front = next_of_front(table, front->wall)) {
         chart_point(&chart, front->wall, drawn(front));
     }

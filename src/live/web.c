@@ -10,18 +10,17 @@
 #ifdef SANDREEL_MICROHTTPD
 
 #include "base/asset.h"
-#include "live/command.h"
+#include "live/request.h"
 #include "live/web_json.h"
 
 #include <arpa/inet.h>
-#include <math.h>
 #include <microhttpd.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/random.h>
 
 enum {
-    KEY_BYTES = 16, KEY_LENGTH = 2 * KEY_BYTES,
+    KEY_BYTES = REQUEST_KEY_LENGTH / 2,
     CONNECTIONS_MAX = 24,
     IDLE_SECONDS = 20,          /* a connection that says nothing is closed */
     HEADERS_BYTES = 16384
@@ -29,19 +28,17 @@ enum {
 
 static const double wait_seconds = 5;           /* for a newer picture */
 static const double fresh_seconds = 0.5;        /* for one to save, if nothing has changed */
-static const double rate_max = 120, rate_default = 30;
+static const double rate_min = 0.1, rate_max = 120, rate_default = 30;
+static const double after_max = 1e15;           /* frames: exact as a double */
 static const int png_level = 1;                 /* the fast one */
 
 struct web {
     struct loop *loop;
     struct MHD_Daemon *daemon;
-    char key[KEY_LENGTH + 1];
+    char key[REQUEST_KEY_LENGTH + 1];
     char address[80];
     uint16_t port;
 };
-
-/* What came with a request so far. */
-struct body { size_t size; bool too_long; char bytes[COMMAND_LINE_MAX]; };
 
 bool web_available(void) { return true; }
 const char *web_address(const struct web *web) { return web->address; }
@@ -95,55 +92,11 @@ static enum MHD_Result send_asset(struct MHD_Connection *connection, const char 
                                         MHD_RESPMEM_PERSISTENT));
 }
 
-/* ---- who may ask -------------------------------------------------------------------------- */
-
-static bool is_loopback_host(const char *host)
-{
-    static const char *const names[] = {"127.0.0.1", "localhost", "[::1]"};
-    for (size_t k = 0; host && k < sizeof names / sizeof *names; k++) {
-        const size_t length = strlen(names[k]);
-        if (strncmp(host, names[k], length) != 0) continue;
-        const char *port = host + length;
-        if (*port == 0) return true;
-        /* Any port: `ssh -L` may have chosen another one at the viewer's end. */
-        return *port == ':' && port[1] && strspn(port + 1, "0123456789") == strlen(port + 1);
-    }
-    return false;
-}
-
-/* A page from elsewhere may send requests here, but not without saying where it is from. */
-static bool is_from_here(struct MHD_Connection *connection)
-{
-    const char *host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host");
-    const char *origin = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Origin");
-    const char *site = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Sec-Fetch-Site");
-    if (!is_loopback_host(host)) return false;
-    if (origin && (strncmp(origin, "http://", 7) != 0 || strcmp(origin + 7, host) != 0)) {
-        return false;
-    }
-    return !site || strcmp(site, "same-origin") == 0 || strcmp(site, "none") == 0;
-}
-
-/* The rest of the address behind "/KEY/"; NULL if the key is not ours.  It looks at every byte,
- * so that the time tells nothing. */
-static const char *behind_key(const struct web *web, const char *url)
-{
-    if (strlen(url) < KEY_LENGTH + 2 || url[0] != '/' || url[KEY_LENGTH + 1] != '/') return NULL;
-    unsigned difference = 0;
-    for (int k = 0; k < KEY_LENGTH; k++) {
-        difference |= (unsigned char)url[k + 1] ^ (unsigned char)web->key[k];
-    }
-    return difference == 0 ? url + KEY_LENGTH + 2 : NULL;
-}
-
 /* ---- pictures ----------------------------------------------------------------------------- */
 
-static double argument(struct MHD_Connection *connection, const char *name, double fallback)
+static const char *argument(struct MHD_Connection *connection, const char *name)
 {
-    const char *text = MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, name);
-    char *end;
-    const double value = text ? strtod(text, &end) : fallback;
-    return text && (end == text || *end || !isfinite(value)) ? fallback : value;
+    return MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, name);
 }
 
 struct holding { struct stage *stage; const struct stage_frame *frame; };
@@ -199,10 +152,11 @@ static enum MHD_Result send_no_frame(struct web *web, struct MHD_Connection *con
 static enum MHD_Result send_frame(struct web *web, struct MHD_Connection *connection)
 {
     struct stage *stage = loop_stage(web->loop);
-    const char *as = MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, "as");
+    const char *as = argument(connection, "as");
     const bool png = as && strcmp(as, "png") == 0;
-    const double after = fmin(fmax(argument(connection, "after", 0), 0), 1e15);
-    const double rate = fmin(fmax(argument(connection, "rate", rate_default), 0.1), rate_max);
+    const double after = request_number(argument(connection, "after"), 0, 0, after_max);
+    const double rate = request_number(argument(connection, "rate"), rate_default, rate_min,
+                                       rate_max);
     const struct stage_frame *frame = stage_await(stage, (uint64_t)after, wait_seconds, rate);
     if (!frame) return send_no_frame(web, connection);
     struct MHD_Response *response = png ? png_response(frame) : raw_response(stage, frame);
@@ -240,13 +194,13 @@ static enum MHD_Result send_picture(struct web *web, struct MHD_Connection *conn
 /* ---- commands ----------------------------------------------------------------------------- */
 
 static enum MHD_Result take_command(struct web *web, struct MHD_Connection *connection,
-                                    const struct body *body)
+                                    const struct request_body *body)
 {
     char reply[SESSION_REPLY_MAX];
     if (body->too_long) {
         return send_text(connection, MHD_HTTP_CONTENT_TOO_LARGE, "a command is one short line");
     }
-    if (memchr(body->bytes, 0, body->size)) {
+    if (!request_is_text(body)) {
         return send_text(connection, MHD_HTTP_BAD_REQUEST, "a command is text");
     }
     const bool ok = loop_ask(web->loop, body->bytes, reply, sizeof reply);
@@ -271,55 +225,54 @@ static enum MHD_Result send_call(struct web *web, struct MHD_Connection *connect
 
 /* ---- requests ----------------------------------------------------------------------------- */
 
-static enum MHD_Result get(struct web *web, struct MHD_Connection *connection, const char *name)
+static enum MHD_Result answer(struct web *web, struct MHD_Connection *connection,
+                              enum request request, const struct request_body *body)
 {
-    if (!*name) return send_asset(connection, "assets/live/page.html", "text/html; charset=utf-8");
-    if (strcmp(name, "page.css") == 0) {
+    switch (request) {
+    case REQUEST_page:
+        return send_asset(connection, "assets/live/page.html", "text/html; charset=utf-8");
+    case REQUEST_style:
         return send_asset(connection, "assets/live/page.css", "text/css; charset=utf-8");
-    }
-    if (strcmp(name, "page.js") == 0) {
+    case REQUEST_script:
         return send_asset(connection, "assets/live/page.js", "text/javascript; charset=utf-8");
+    case REQUEST_frame:     return send_frame(web, connection);
+    case REQUEST_picture:   return send_picture(web, connection);
+    case REQUEST_about:     return send_call(web, connection, web_json_about);
+    case REQUEST_keys:      return send_call(web, connection, web_json_keys);
+    case REQUEST_news:      return send_news(web, connection);
+    case REQUEST_COMMAND:   return take_command(web, connection, body);
+    case REQUEST_UNKNOWN:   return send_text(connection, MHD_HTTP_NOT_FOUND, "not found");
+    case REQUEST_NOT_ALLOWED:
+        return send_text(connection, MHD_HTTP_METHOD_NOT_ALLOWED, "not allowed");
+    case REQUEST_FORBIDDEN: break;
     }
-    if (strcmp(name, "frame") == 0) return send_frame(web, connection);
-    if (strcmp(name, "picture.png") == 0) return send_picture(web, connection);
-    if (strcmp(name, "about") == 0) return send_call(web, connection, web_json_about);
-    if (strcmp(name, "keys") == 0) return send_call(web, connection, web_json_keys);
-    if (strcmp(name, "news") == 0) return send_news(web, connection);
-    return send_text(connection, MHD_HTTP_NOT_FOUND, "not found");
+    return send_text(connection, MHD_HTTP_FORBIDDEN, "this is not for you");
 }
 
-/* The body comes in pieces before the request is complete; at most one line of it is kept. */
-static enum MHD_Result gather(struct body **body, const char *data, size_t *size)
-{
-    if (!*body) {
-        *body = calloc(1, sizeof **body);
-        return *body ? MHD_YES : MHD_NO;
-    }
-    if (*size < sizeof (*body)->bytes - (*body)->size) {
-        memcpy((*body)->bytes + (*body)->size, data, *size);
-        (*body)->size += *size;
-    } else {
-        (*body)->too_long = true;
-    }
-    *size = 0;
-    return MHD_YES;
-}
-
+/* The body comes in pieces before the request is complete. */
 static enum MHD_Result serve(void *context, struct MHD_Connection *connection, const char *url,
                              const char *method, const char *version, const char *data,
                              size_t *data_size, void **request)
 {
-    struct web *web = context;
-    struct body *body = *request;
+    const struct web *web = context;
+    struct request_body *body = *request;
     (void)version;
-    if (!body || *data_size > 0) return gather((struct body **)request, data, data_size);
-    const char *name = is_from_here(connection) ? behind_key(web, url) : NULL;
-    if (!name) return send_text(connection, MHD_HTTP_FORBIDDEN, "this is not for you");
-    if (strcmp(method, "GET") == 0) return get(web, connection, name);
-    if (strcmp(method, "POST") == 0 && strcmp(name, "command") == 0) {
-        return take_command(web, connection, body);
+    if (!body) {
+        *request = calloc(1, sizeof *body);
+        return *request ? MHD_YES : MHD_NO;
     }
-    return send_text(connection, MHD_HTTP_METHOD_NOT_ALLOWED, "not allowed");
+    if (*data_size > 0) {
+        request_gather(body, data, *data_size);
+        *data_size = 0;
+        return MHD_YES;
+    }
+    const struct request_words words = {
+        .method = method, .url = url,
+        .host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host"),
+        .origin = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Origin"),
+        .site = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Sec-Fetch-Site"),
+    };
+    return answer(context, connection, request_read(&words, web->key), body);
 }
 
 static void forget(void *context, struct MHD_Connection *connection, void **request,

@@ -6,6 +6,7 @@
 
 #include "live/command.h"
 #include "live/sight.h"
+#include "run/manifest.h"
 #include "scene/scene_value.h"
 
 #include <jansson.h>
@@ -48,7 +49,7 @@ char *web_json_status(const struct stage_status *status, const struct transform 
 
 char *web_json_reply(bool ok, const char *text)
 {
-    return text_of(json_pack("{s:b, s:s%}", "ok", ok, "text", text, strlen(text)));
+    return text_of(json_pack("{s:b, s:o}", "ok", ok, "text", manifest_text(text)));
 }
 
 static json_t *words(const char *choices)
@@ -101,14 +102,15 @@ void web_json_about(void *context, struct session *session)
     const void *value;
     scene_value_find(scene, "view.color", &color, &value);
     scene_value_find(scene, "view.colormap", &colormap, &value);
-    json_t *root = json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:f}", "name", scene->name, "title",
-        scene->title, "model", session->sim.model->name, "work", session->sim.model->work,
-        "time_unit", scene_unit(scene, "time"), "directory", session->directory, "radius",
-        scene->radius_mean);
-    json_object_set_new(root, "path", json_string(session->timeline.path));
+    json_t *root = json_pack("{s:o, s:o, s:s, s:s, s:s, s:o, s:f, s:o}", "name",
+        manifest_text(scene->name), "title", manifest_text(scene->title), "model",
+        session->sim.model->name, "work", session->sim.model->work, "time_unit",
+        scene_unit(scene, "time"), "directory", manifest_text(session->directory), "radius",
+        scene->radius_mean, "path", manifest_text(session->timeline.path));
     json_t *overrides = json_array();
     for (uint32_t k = 0; k < session->origin.overrides.count; k++) {
-        json_array_append_new(overrides, json_string(session->origin.overrides.texts[k]));
+        json_array_append_new(overrides,
+                              manifest_text(session->origin.overrides.texts[k]));
     }
     json_object_set_new(root, "overrides", overrides);
     json_object_set_new(root, "speed", number(session->speed));
@@ -156,7 +158,7 @@ static void add_key(void *context, const char *path, const struct key *key, cons
         "unit", key->unit ? key->unit : "", "type", key_type_word(key->type),
         "low", fabs(key->low) < 1e30 ? number(key->low) : NULL,
         "high", fabs(key->high) < 1e30 ? number(key->high) : NULL);
-    if (text) json_object_set_new(entry, "text", json_string(text));
+    if (text) json_object_set_new(entry, "text", manifest_text(text));
     if (key->type == KEY_REAL && text) {
         json_object_set_new(entry, "number", number(*(const double *)value));
     }

@@ -17,7 +17,10 @@ enum chart_style {
     CHART_POINTS,
     CHART_ERRORS,               /* points with error bars */
     CHART_STEPS,                /* histograms */
-    CHART_LAW                   /* a law or a fit: dashed, black */
+    CHART_LAW,                  /* a law or a fit: dashed, black */
+    CHART_CELLS                 /* a grid of cells, x running fastest, coloured by a value in the
+                                 * place of the error; named by the curve beside a colour bar; a
+                                 * chart of cells has no other curve */
 };
 
 enum { CHART_CURVES = 24, CHART_TEXT = 160, CHART_LABELS = 64, CHART_LABEL_TEXT = 48 };

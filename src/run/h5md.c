@@ -117,9 +117,20 @@ static void put_unit(struct h5md *h5md, hid_t dataset, const struct scene *scene
 
 /* ---- a new file ---------------------------------------------------------------------------- */
 
+/* Properties of something new: without the date, so that the same run gives the same bytes. */
+static hid_t undated(hid_t class)
+{
+    const hid_t how = H5Pcreate(class);
+    H5Pset_obj_track_times(how, false);
+    return how;
+}
+
 static hid_t make_group(struct h5md *h5md, hid_t owner, const char *name)
 {
-    return note(h5md, H5Gcreate2(owner, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    const hid_t how = undated(H5P_GROUP_CREATE);
+    const hid_t group = note(h5md, H5Gcreate2(owner, name, H5P_DEFAULT, how, H5P_DEFAULT));
+    H5Pclose(how);
+    return group;
 }
 
 /* /h5md: version, author, creator, and the module that allows units. */
@@ -167,8 +178,10 @@ static void write_box(struct h5md *h5md, const struct scene *scene)
     put_attribute(h5md, box, "boundary", type, 2, boundary);
     put_attribute(h5md, box, "offset", H5T_NATIVE_DOUBLE, 2, scene->box);
     const hid_t space = H5Screate_simple(1, (const hsize_t[]){2}, NULL);
+    const hid_t how = undated(H5P_DATASET_CREATE);
     const hid_t set = note(h5md, H5Dcreate2(box, "edges", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT,
-                                            H5P_DEFAULT, H5P_DEFAULT));
+                                            how, H5P_DEFAULT));
+    H5Pclose(how);
     note(h5md, H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, edges));
     put_unit(h5md, set, scene, "length");
     H5Dclose(set);
@@ -183,7 +196,7 @@ static hid_t make_dataset(struct h5md *h5md, hid_t owner, const char *name, hid_
 {
     const hsize_t size[3] = {0, h5md->rows, 2}, most[3] = {H5S_UNLIMITED, H5S_UNLIMITED, 2};
     const hid_t space = H5Screate_simple(rank, size, most);
-    const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+    const hid_t how = undated(H5P_DATASET_CREATE);
     note(h5md, H5Pset_chunk(how, rank, chunk));
     note(h5md, H5Pset_shuffle(how));
     note(h5md, H5Pset_deflate(how, DEFLATE));
@@ -257,9 +270,10 @@ struct h5md *h5md_create(const char *path, const struct scene *scene, struct err
 {
     struct h5md *h5md = take(path, error);
     if (!h5md) return NULL;
-    const hid_t how = access_list();
+    const hid_t how = access_list(), root = undated(H5P_FILE_CREATE);
     h5md->rows = scene->placed.count > CHUNK_GRAINS_MIN ? scene->placed.count : CHUNK_GRAINS_MIN;
-    h5md->file = note(h5md, H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, how));
+    h5md->file = note(h5md, H5Fcreate(path, H5F_ACC_TRUNC, root, how));
+    H5Pclose(root);
     H5Pclose(how);
     if (!h5md->failed) {
         write_header(h5md, scene);

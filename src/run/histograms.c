@@ -7,6 +7,7 @@
 #include "measure/csv.h"
 #include "run/folder.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -71,11 +72,18 @@ static void write_impacts(struct histograms *histograms, const struct tally_impa
     histograms->impact.rows += bins;
 }
 
+/* No run numbers as many grains; a saved state that does was forged. */
+enum { IDS_MAX = 1 << 28 };
+
 /* Room for grains with ids below `count`; new ones have had no contact. */
 static bool know(struct histograms *histograms, uint32_t count, struct error *error)
 {
     if (count <= histograms->known_count) return true;
-    const uint32_t room = count < UINT32_MAX / 2 ? count + count / 2 : count;
+    if (count > IDS_MAX) {
+        return error_set(error, "a grain has the number %u; collisions are counted for numbers "
+                         "below %u", count - 1, IDS_MAX);
+    }
+    const uint32_t room = count + count / 2;
     struct histograms_grain *known = realloc(histograms->known, room * sizeof *known);
     if (!known) return error_set(error, "not enough memory to count collisions of %u grains", room);
     memset(known + histograms->known_count, 0, (room - histograms->known_count) * sizeof *known);
@@ -103,7 +111,10 @@ static bool write_counts(struct histograms *histograms, const struct grains *gra
 {
     const uint32_t n = grains->count;
     uint32_t ids = 0;
-    for (uint32_t k = 0; k < n; k++) ids = grains->id[k] >= ids ? grains->id[k] + 1 : ids;
+    for (uint32_t k = 0; k < n; k++) {
+        const uint32_t id = grains->id[k];
+        if (id >= ids) ids = id < IDS_MAX ? id + 1 : IDS_MAX + 1;
+    }
     uint32_t *contacts = malloc((size_t)n * sizeof *contacts + 1),
              *elastic = malloc((size_t)n * sizeof *elastic + 1);
     bool done = know(histograms, ids, error);
@@ -172,7 +183,9 @@ void histograms_archive(struct histograms *histograms, struct archive *archive)
     ledger_archive(&histograms->collisions, "histograms.collisions", archive);
     archive_array(archive, "histograms.before", histograms->before, histograms->bins);
     uint32_t count = histograms->known_count;
-    archive_value(archive, "histograms.known_count", &count);
+    const size_t most = archive->mode == ARCHIVE_LOAD ? archive->size / sizeof *histograms->known
+                                                      : IDS_MAX;
+    archive_count(archive, "histograms.known_count", &count, (uint32_t)fmin((double)most, IDS_MAX));
     struct error minor = {0};
     if (!know(histograms, count, &minor)) archive_fail(archive, minor.text);
     else archive_array(archive, "histograms.known", histograms->known, count);

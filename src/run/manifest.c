@@ -20,16 +20,15 @@ static json_t *hash_word(uint64_t hash)
     return json_sprintf("%016" PRIx64, hash);
 }
 
-/* A name that is not UTF-8 (a file's may be any bytes) gets a question mark for each strange
- * byte. */
-static json_t *words(const char *text)
+json_t *manifest_text(const char *text)
 {
     json_t *whole = json_string(text);
     if (whole) return whole;
-    char plain[KEY_TEXT_MAX];
-    snprintf(plain, sizeof plain, "%s", text);
-    for (char *at = plain; *at; at++) if ((unsigned char)*at > 126) *at = '?';
-    return json_string(plain);
+    char *plain = strdup(text);
+    for (char *at = plain; at && *at; at++) if ((unsigned char)*at > 126) *at = '?';
+    json_t *bent = plain ? json_string(plain) : NULL;
+    free(plain);
+    return bent;
 }
 
 static json_t *number(double value)
@@ -50,6 +49,14 @@ static json_t *counts(const struct run_result *result)
     return list;
 }
 
+/* What a unit of simulated time, and what a step costs; nothing of a run that did nothing. */
+static void add_rates(json_t *part, double seconds, const struct run_result *result)
+{
+    if (!(result->span > 0 && result->work > 0)) return;
+    json_object_set_new(part, "per_simulated_time", json_real(seconds / result->span));
+    json_object_set_new(part, "per_step", json_real(seconds / result->work));
+}
+
 static json_t *seconds(const struct run_result *result)
 {
     json_t *list = json_object();
@@ -57,13 +64,13 @@ static json_t *seconds(const struct run_result *result)
     for (int p = 0; p < PART_COUNT; p++) {
         const double mine = p == PART_encode ? result->cpu_encode : result->parts.cpu[p];
         cpu += mine;
-        json_object_set_new(list, parts_name((enum part)p),
-                            json_pack("{s:f, s:f}", "wall", result->parts.wall[p], "cpu", mine));
+        json_t *part = json_pack("{s:f, s:f}", "wall", result->parts.wall[p], "cpu", mine);
+        add_rates(part, run_part_seconds(result, (enum part)p), result);
+        json_object_set_new(list, parts_name((enum part)p), part);
     }
-    json_object_set_new(list, "total",
-                        json_pack("{s:f, s:f}", "wall", result->wall, "cpu", cpu));
-    json_object_set_new(list, "per_simulated_time", json_real(result->per_time));
-    json_object_set_new(list, "per_step", json_real(result->per_step));
+    json_t *total = json_pack("{s:f, s:f}", "wall", result->wall, "cpu", cpu);
+    add_rates(total, result->wall, result);
+    json_object_set_new(list, "total", total);
     return list;
 }
 
@@ -82,7 +89,8 @@ static json_t *describe(const struct manifest *manifest)
     const time_t now = time(NULL);
     strftime(when, sizeof when, "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
     json_t *root = json_pack("{s:s, s:o, s:o, s:s, s:I, s:s, s:o, s:o}",
-        "status", manifest->status, "scene", words(scene->name), "title", words(scene->title),
+        "status", manifest->status, "scene", manifest_text(scene->name),
+        "title", manifest_text(scene->title),
         "model", manifest->model->name, "seed", (json_int_t)scene->seed,
         "written", when, "scene_hash", hash_word(manifest->scene_hash),
         "versions", build_versions());

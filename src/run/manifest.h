@@ -7,6 +7,8 @@
 
 #include "run/run.h"
 
+#include <jansson.h>
+
 struct manifest {
     const struct scene *scene;
     const struct model *model;
@@ -17,5 +19,9 @@ struct manifest {
 };
 
 bool manifest_save(const struct manifest *manifest, const char *directory, struct error *error);
+
+/* Text of any bytes (a file's name, what a user typed) as a JSON string: if it is not UTF-8, with
+ * a question mark for each strange byte.  NULL: no memory. */
+json_t *manifest_text(const char *text);
 
 #endif

@@ -299,6 +299,11 @@ static bool drawn_one(void *context, uint64_t done, uint64_t count)
     return may_go_on(run);
 }
 
+double run_part_seconds(const struct run_result *result, enum part part)
+{
+    return part == PART_encode ? result->cpu_encode : result->parts.wall[part];
+}
+
 static void fill_result(struct run *run, struct run_result *result)
 {
     parts_enter(&run->parts, run->parts.now, encoder_cpu(run->writer.encoder));
@@ -310,9 +315,8 @@ static void fill_result(struct run *run, struct run_result *result)
     for (uint32_t p = 0; p < run->scene->phase_count; p++) {
         result->effects |= run->scene->phases[p]->effects;
     }
-    const double span = result->counters.time - run->time_start;
-    if (span > 0) result->per_time = run->parts.wall[PART_core] / span;
-    if (run->work_done > 0) result->per_step = run->parts.wall[PART_core] / run->work_done;
+    result->span = result->counters.time - run->time_start;
+    result->work = run->work_done;
     result->frames = run->writer.schedules[WRITER_FRAME].next;
     result->maps = run->writer.maps;
     result->log_rows = run->writer.logbook.ledger.rows;
@@ -363,6 +367,38 @@ static bool carry_out(struct run *run, struct run_result *result)
     return done;
 }
 
+/* Do two resolved scenes that are otherwise the same end at the same time? */
+static bool same_end(const char *one, const char *other)
+{
+    static const char line[] = "\nuntil ";
+    const char *a = strstr(one, line), *b = strstr(other, line);
+    return a && b && strcspn(a + 1, "\n") == strcspn(b + 1, "\n")
+        && strncmp(a, b, 1 + strcspn(a + 1, "\n")) == 0;
+}
+
+/* A run that is done and keeps no checkpoints: all of it is there, but it cannot be made longer. */
+static bool is_there(struct run *run, bool *there)
+{
+    char path[FILE_PATH_MAX];
+    *there = false;
+    if (!run->resumes || checkpoint_exists(folder_path(path, run->directory, "checkpoint"))) {
+        return true;
+    }
+    char *text = load_text(folder_path(path, run->directory, "scene.cfg"), run->error);
+    *there = text && same_end(text, run->scene_text);
+    folder_remove(run->directory, "scene.cfg.new");
+    if (text && !*there) {
+        error_set_code(run->error, EXIT_USAGE, "%s: this run is done and kept no checkpoint, so it "
+                       "cannot be made longer; run it anew with --force, and with "
+                       "-s output.checkpoint=INTERVAL", run->directory);
+    } else if (text && run->request->warn) {
+        run->request->warn(run->request->context, "this run is done already; nothing was left to "
+                                                  "do");
+    }
+    free(text);
+    return *there;
+}
+
 /* Opens the directory.  A run that died before its first checkpoint is begun anew. */
 static bool claim(struct run *run)
 {
@@ -391,9 +427,10 @@ bool run_scene(const struct run_request *request, struct run_result *result,
     *result = (struct run_result){0};
     snprintf(run->directory, sizeof run->directory, "%s", request->directory);
     parts_begin(&run->parts, PART_core);
-    const bool done = claim(run) && settle_scene(run)
-        && simulation_create(&run->sim, request->model, request->scene, run->error)
-        && carry_out(run, result);
+    const bool done = claim(run) && settle_scene(run) && is_there(run, &result->was_done)
+        && (result->was_done
+            || (simulation_create(&run->sim, request->model, request->scene, run->error)
+                && carry_out(run, result)));
     writer_close(&run->writer);
     simulation_destroy(&run->sim);
     free(run->scene_text);

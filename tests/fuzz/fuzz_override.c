@@ -8,12 +8,15 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-static const char scene[] =
-    "until = 4; box = (0, 0, 10, 10); gravity = (0, -1);\n"
-    "grains = ( { radius = 0.5; restitution = 0.9; } );\n"
-    "placements = ( { count = 20; } );\n"
+#define PLAIN                                                                       \
+    "until = 4; box = (0, 0, 10, 10); gravity = (0, -1);\n"                         \
+    "grains = ( { radius = 0.5; restitution = 0.9; } );\n"                          \
+    "placements = ( { count = 20; } );\n"                                           \
     "walls = ( { shape = \"segment\"; from = (1, 1); to = (9, 1); } );\n"
-    "phases = ( { time = 1.0; set = (\"grains.restitution=0.5\"); } );\n";
+
+/* A phase is the scene read once more, so most inputs do without. */
+static const char plain[] = PLAIN,
+    phased[] = PLAIN "phases = ( { time = 1.0; set = (\"grains.restitution=0.5\"); } );\n";
 
 enum { LINES_MAX = 8 };
 
@@ -33,8 +36,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     struct setup setup;
     struct error error;
-    const struct setup_request request = {.path = "fuzzed.cfg", .text = scene, .overrides = lines,
-                                          .override_count = count};
+    const struct setup_request request = {.path = "fuzzed.cfg", .text = size % 4 ? plain : phased,
+                                          .overrides = lines, .override_count = count};
     const bool loaded = setup_load(&setup, &request, &error);
     if (!loaded && setup.findings && setup.findings->errors == 0) abort();  /* without a reason */
     setup_free(&setup);
