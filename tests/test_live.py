@@ -250,6 +250,9 @@ def test_a_session_goes_on_from_a_run():
     done = sandreel("live", "r", "--commands", "commands", "-o", "a", "--force")
     assert abs(float(done.stdout.splitlines()[0]) - 0.5) < 0.01
     assert "same last state" in sandreel("replay", "a", "-o", "b", "--force").stderr
+    # The next session in that folder begins at time 0 again, and so does its repetition.
+    live("a", "go until 0.1\nset gravity (1, 1)\ngo until 0.2\n")
+    assert "same last state" in sandreel("replay", "a", "-o", "b", "--force").stderr
 
 
 def test_what_cannot_be_is_refused_and_changes_nothing():
