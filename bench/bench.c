@@ -83,19 +83,21 @@ static bool measure_bed(const struct bench_case *which, struct bench_result *res
 }
 
 /* Hard discs in a periodic box (bench_ed.h).  `amount` is the number of grains, `scene` the area
- * fraction, `set` the restitution. */
+ * fraction, `set` the restitution, `text` what is told: NULL for the time. */
 static bool measure_discs(const struct bench_case *which, struct bench_result *result,
                           struct error *error)
 {
-    const bool large = which->amount > 50000;
+    const double n = which->amount;
     const struct bench_ed_case gas = {.side = (uint32_t)sqrt(which->amount),
         .fraction = strtod(which->scene, NULL), .restitution = strtod(which->set, NULL),
-        .settle = 10, .collisions = large ? 20 : 80};
+        .settle = n > 5e5 ? 3 : 10, .collisions = n > 5e5 ? 4 : n > 5e4 ? 20 : 80};
     struct bench_ed_result measured;
     const double wall = clock_wall();
     if (!bench_ed(&gas, &measured, error)) return false;
     result->wall = clock_wall() - wall;
-    result->value = measured.ns;
+    const char *of = which->text ? which->text : "";
+    result->value = strcmp(of, "crossings") == 0 ? measured.crossings
+                  : strcmp(of, "memory") == 0 ? measured.bytes : measured.ns;
     result->cpu = 1e-9 * measured.ns * (double)measured.collisions;
     return true;
 }
@@ -280,6 +282,12 @@ const struct bench_case bench_list[] = {
      measure_discs, .scene = "0.25", .set = "1", .amount = 10000},
     {"ed-dense-1e5", "99,856 hard discs, area fraction 0.70, elastic", "ns/collision", false,
      measure_discs, .scene = "0.70", .set = "1", .amount = 99856},
+    {"ed-gas-1e6", "1,000,000 hard discs, area fraction 0.25, elastic", "ns/collision", false,
+     measure_discs, .scene = "0.25", .set = "1", .amount = 1e6},
+    {"ed-crossings", "cell crossings, and predictions made anew, of ed-gas-1e4", "a collision", false,
+     measure_discs, .scene = "0.25", .set = "1", .amount = 10000, .text = "crossings"},
+    {"ed-memory", "state of ed-gas-1e4", "bytes/grain", false,
+     measure_discs, .scene = "0.25", .set = "1", .amount = 10000, .text = "memory"},
     {"dsmc-1e5", "99,856 points, ten a cell, mean free path two cells, one thread",
      "M particle-steps/cpu-s", true, measure_points, .scene = "1e5", .amount = 1},
     {"dsmc-1e5-2", "the same on two threads, against one by turns", "times as fast", true,

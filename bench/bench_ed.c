@@ -5,6 +5,7 @@
 #include "bench/bench_ed.h"
 
 #include "base/clock.h"
+#include "bench/heap.h"
 #include "model/simulation.h"
 
 #include <math.h>
@@ -61,7 +62,9 @@ bool bench_ed(const struct bench_ed_case *what, struct bench_ed_result *result,
 {
     struct scene *scene = load(what, error);
     struct simulation sim = {0}, lossy = {0};
+    const double before = heap_bytes();
     bool done = scene && simulation_create(&sim, model_find("ed"), scene, error);
+    const double bytes = heap_bytes() - before;
     if (done) {
         run(&sim, what->settle);
         done = switch_on(&sim, &lossy, error);
@@ -77,6 +80,7 @@ bool bench_ed(const struct bench_ed_case *what, struct bench_ed_result *result,
             .ns = 1e9 * seconds / collisions, .collisions = b.collisions - a.collisions,
             .crossings = ((double)(b.steps - a.steps) - collisions) / collisions,
             .elastic = (double)(b.collisions_elastic - a.collisions_elastic) / collisions,
+            .bytes = bytes / (double)b.grains,
             .energy = b.kinetic_energy / a.kinetic_energy, .time = b.time - a.time,
         };
     }

@@ -20,7 +20,9 @@ struct bench_ed_case {
 };
 
 struct bench_ed_result {
-    double ns, crossings, stale, elastic;       /* per collision */
+    double ns, elastic;         /* per collision */
+    double crossings;           /* events besides, per collision: crossings of cells, and contacts
+                                 * whose partner has gone elsewhere, which are predicted anew */
     double bytes;               /* per grain, of the state */
     uint64_t collisions;
     double energy;              /* kinetic energy at the end over that at the start of the timing */

@@ -1,15 +1,15 @@
 /* cost.c - see cost.h.
  *
- * The reference is hard discs where contacts are short encounters, and soft discs with half the
- * time step where grains rest on each other or friction remembers: there hard discs are the
- * approximation.
+ * The reference is what the scene names.  Else: hard discs where contacts are short encounters,
+ * soft discs with half the time step where grains rest on each other or friction remembers, for
+ * there hard discs are the approximation.
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "bench/cost.h"
 
-#include "base/clock.h"
-#include "model/simulation.h"
-#include "run/look.h"
+#include "bench/cost_cache.h"
+#include "bench/cost_settings.h"
+#include "measure/stats.h"
 
 #include <assert.h>
 #include <math.h>
@@ -17,99 +17,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TIMES = 16, SIDE = 6, ROW = SIDE * SIDE, PIECE = 5000 };
+enum { ROW = COST_ROW, OVERRIDES_MAX = 300 };
 
-static const char *const names[] = {
-#define X(name, doc) #name,
-    COST_OBSERVABLES(X)
-#undef X
-};
-
-const char *cost_name(enum cost_observable observable) { return names[observable]; }
-
-/* All observables of one run. */
-struct rows { double values[COST_COUNT][ROW]; };
-
-/* Mean over the seeds and variance of that mean. */
-struct mean { double mean[COST_COUNT][ROW], variance[COST_COUNT][ROW]; };
-
-/* ---- one run ------------------------------------------------------------------------------- */
-
-static double obstacle_momentum(const struct simulation *sim)
-{
-    const struct tally *tally = simulation_tally(sim);
-    double x = 0, y = 0;
-    for (uint32_t b = 0; tally && b < tally->body_count; b++) {
-        x += tally->bodies[b].impulse_x;
-        y += tally->bodies[b].impulse_y;
-    }
-    return hypot(x, y);
-}
-
-static void note_density(const struct scene *scene, const struct grains *grains, double weight,
-                         double row[ROW])
-{
-    const double *box = scene->box;
-    for (uint32_t k = 0; k < grains->count; k++) {
-        const double u = (grains->x[k] - box[0]) / (box[2] - box[0]) * SIDE;
-        const double v = (grains->y[k] - box[1]) / (box[3] - box[1]) * SIDE;
-        if (!(u >= 0 && u < SIDE && v >= 0 && v < SIDE)) continue;
-        row[(int)v * SIDE + (int)u] += weight;
-    }
-}
-
-static bool note(struct rows *rows, const struct simulation *sim, uint32_t k,
-                 struct grains *grains, struct error *error)
-{
-    const struct counters now = simulation_count(sim);
-    /* A model may simulate several particles for a grain: counts are shares of all. */
-    const double all = fmax((double)(now.grains + now.grains_out), 1);
-    rows->values[COST_energy][k] = now.kinetic_energy;
-    rows->values[COST_collisions][k] = (double)now.collisions / all;
-    rows->values[COST_discharge][k] = (double)now.grains / all;
-    rows->values[COST_height][k] = now.potential_energy;
-    rows->values[COST_force][k] = obstacle_momentum(sim);
-    if (k < TIMES / 2) return true;
-    if (!look_at(sim, grains, false, error)) return false;
-    note_density(sim->scene, grains, 1 / all, rows->values[COST_density]);
-    return true;
-}
-
-/* Runs to the end; the wall seconds of the model alone. */
-static bool run_once(const struct setup *setup, double seconds, struct rows *rows, double *wall,
-                     struct error *error)
-{
-    struct simulation sim = {0};
-    struct grains grains = {0};
-    const double until = setup->scene->until;
-    bool done = simulation_create(&sim, setup->model, setup->scene, error);
-    *wall = 0;
-    *rows = (struct rows){0};
-    for (uint32_t k = 0; done && k < TIMES; k++) {
-        const double t = until * (k + 1) / TIMES, start = clock_wall();
-        enum advance outcome;
-        do {
-            outcome = simulation_advance(&sim, t, PIECE, error);
-        } while (outcome == ADVANCE_BUDGET && *wall + clock_wall() - start < seconds);
-        *wall += clock_wall() - start;
-        done = outcome == ADVANCE_REACHED;
-        if (outcome == ADVANCE_BUDGET) error_set(error, "takes longer than %g s", seconds);
-        done = done && note(rows, &sim, k, &grains, error);
-    }
-    grains_free(&grains);
-    if (sim.state) simulation_destroy(&sim);
-    return done;
-}
+/* The runs of all seeds of a setting. */
+struct runs { struct cost_rows seeds[COST_SEEDS_MAX]; };
 
 /* ---- one setting --------------------------------------------------------------------------- */
 
 static bool load(struct setup *setup, const struct cost_request *request,
                  const struct cost_point *point, uint32_t seed, struct error *error)
 {
-    const char *overrides[300];
+    const char *overrides[OVERRIDES_MAX];
     char seed_text[40];
     uint32_t count = 0;
-    assert(request->override_count + point->key_count + 1 < 300);
+    assert(request->override_count + point->key_count + 1 < OVERRIDES_MAX);
     for (uint32_t k = 0; k < request->override_count; k++) {
         overrides[count++] = request->overrides[k];
     }
@@ -129,68 +50,133 @@ static bool load(struct setup *setup, const struct cost_request *request,
     return false;
 }
 
-static void average(const struct rows *rows, uint32_t seeds, struct mean *mean)
+/* Only the reference is kept: of all others the wall time is what is asked for. */
+static bool run_setting(const struct cost_request *request, unsigned observables,
+                        struct cost_point *point, struct runs *runs, struct error *error)
 {
-    *mean = (struct mean){0};
-    for (int o = 0; o < COST_COUNT; o++) {
-        for (int k = 0; k < ROW; k++) {
-            double sum = 0, squares = 0;
-            for (uint32_t s = 0; s < seeds; s++) sum += rows[s].values[o][k];
-            const double middle = sum / seeds;
-            for (uint32_t s = 0; s < seeds; s++) {
-                const double off = rows[s].values[o][k] - middle;
-                squares += off * off;
-            }
-            mean->mean[o][k] = middle;
-            mean->variance[o][k] = seeds > 1 ? squares / (seeds - 1) / seeds : 0;
-        }
-    }
-}
-
-/* All seeds of a setting. */
-static bool run_setting(const struct cost_request *request, struct cost_point *point,
-                        struct mean *mean, struct error *error)
-{
-    struct rows *rows = calloc(request->seeds, sizeof *rows);
-    if (!rows) return error_set(error, "not enough memory");
+    const char *cache = point->reference ? request->cache : NULL;
     bool done = true;
-    point->wall = INFINITY;
+    point->wall = point->cpu = INFINITY;
+    point->cached = true;
     for (uint32_t s = 0; done && s < request->seeds; s++) {
         struct setup setup;
-        double wall = 0;
-        done = load(&setup, request, point, s + 1, error)
-            && run_once(&setup, request->seconds, &rows[s], &wall, error);
-        point->wall = fmin(point->wall, wall);
+        struct cost_rows *rows = &runs->seeds[s];
+        done = load(&setup, request, point, s + 1, error);
+        const bool known = done && cost_cache_load(cache, setup.scene, observables, rows);
+        if (done && !known) {
+            point->cached = false;
+            done = cost_row_run(setup.model, setup.scene, observables, request->seconds, rows,
+                                error);
+            if (done) cost_cache_save(cache, setup.scene, observables, rows);
+        }
+        if (done) {
+            point->wall = fmin(point->wall, rows->wall);
+            point->cpu = fmin(point->cpu, rows->cpu);
+            point->step = cost_settings_step(&setup);
+        }
         setup_free(&setup);
     }
-    if (done) average(rows, request->seeds, mean);
-    free(rows);
     point->ran = done;
     return done;
 }
 
 /* ---- errors -------------------------------------------------------------------------------- */
 
-static void compare(const struct cost_table *table, const struct mean *mean,
-                    const struct mean *reference, struct cost_point *point)
+static double mean_of(const struct runs *runs, uint32_t seeds, int o, int k)
 {
+    double sum = 0;
+    for (uint32_t s = 0; s < seeds; s++) sum += runs->seeds[s].values[o][k];
+    return sum / seeds;
+}
+
+/* What a squared difference in each number of a row is divided by; 0: the number does not count. */
+static bool weigh(const struct runs *reference, uint32_t seeds, int o, double weights[ROW])
+{
+    double squares = 0;
+    uint32_t count = 0;
+    for (int k = 0; k < ROW; k++) {
+        const double mean = mean_of(reference, seeds, o, k);
+        squares += mean * mean;
+        count += mean != 0;
+        weights[k] = mean * mean;
+    }
+    if (!(squares > 0)) return false;
+    for (int k = 0; k < ROW; k++) {
+        if (weights[k] == 0 && cost_row_measure((enum cost_observable)o) != COST_OF_ALL) continue;
+        switch (cost_row_measure((enum cost_observable)o)) {
+        case COST_OF_EACH:   weights[k] = 1 / (weights[k] * count); break;
+        case COST_OF_ALL:    weights[k] = 1 / squares; break;
+        case COST_OF_LENGTH: weights[k] = 2.0 / count; break;   /* a way has two components */
+        }
+    }
+    return true;
+}
+
+/* Ways have no sign that could cancel: their lengths are averaged over the seeds. */
+static void compare_ways(const struct runs *runs, const struct runs *reference, uint32_t seeds,
+                         int o, const double weights[ROW], struct cost_point *point)
+{
+    double sum = 0, squares = 0;
+    for (uint32_t s = 0; s < seeds; s++) {
+        double off2 = 0;
+        for (int k = 0; k < ROW; k++) {
+            const double off = runs->seeds[s].values[o][k] - reference->seeds[s].values[o][k];
+            off2 += weights[k] * off * off;
+        }
+        sum += sqrt(off2);
+        squares += off2;
+    }
+    point->errors[o] = sum / seeds;
+    point->noise[o] = sqrt(fmax(squares / seeds - sum * sum / seeds / seeds, 0) / (seeds - 1));
+}
+
+/* Seed by seed: both runs of a seed begin with the same grains, and what this does to them both
+ * is no error.  The reference itself is compared with the mean of its seeds. */
+static void compare_row(const struct runs *runs, const struct runs *reference, uint32_t seeds,
+                        int o, struct cost_point *point)
+{
+    double weights[ROW], off2 = 0, noise2 = 0;
+    if (!weigh(reference, seeds, o, weights)) return;
+    if (cost_row_measure((enum cost_observable)o) == COST_OF_LENGTH) {
+        compare_ways(runs, reference, seeds, o, weights, point);
+        return;
+    }
+    for (int k = 0; k < ROW; k++) {
+        const double middle = runs == reference ? mean_of(reference, seeds, o, k) : 0;
+        double sum = 0, squares = 0;
+        for (uint32_t s = 0; s < seeds; s++) {
+            const double there = runs == reference ? middle : reference->seeds[s].values[o][k];
+            const double off = runs->seeds[s].values[o][k] - there;
+            sum += off;
+            squares += off * off;
+        }
+        const double mean = sum / seeds;
+        off2 += weights[k] * mean * mean;
+        noise2 += weights[k] * fmax(squares / seeds - mean * mean, 0) / (seeds - 1);
+    }
+    point->errors[o] = runs == reference ? 0 : sqrt(off2);
+    point->noise[o] = sqrt(noise2);
+}
+
+static void compare(const struct cost_table *table, const struct runs *runs,
+                    const struct runs *reference, struct cost_point *point)
+{
+    bool first = true;
     for (int o = 0; o < COST_COUNT; o++) {
-        double off2 = 0, scale2 = 0, noise2 = 0;
         point->errors[o] = point->noise[o] = NAN;
         if (!(table->observables >> o & 1)) continue;
-        for (int k = 0; k < ROW; k++) {
-            const double off = mean->mean[o][k] - reference->mean[o][k];
-            off2 += off * off;
-            scale2 += reference->mean[o][k] * reference->mean[o][k];
-            noise2 += mean->variance[o][k] + reference->variance[o][k];
-        }
-        if (!(scale2 > 0)) continue;
-        point->errors[o] = sqrt(off2 / scale2);
-        point->noise[o] = sqrt(noise2 / scale2);
-        if (point->errors[o] < point->error) continue;
+        compare_row(runs, reference, table->seeds, o, point);
+        if (isnan(point->errors[o])) continue;
+        if (!first && point->errors[o] < point->error) continue;
+        if (!first && point->errors[o] == point->error
+            && point->noise[o] <= point->error_noise) continue;
+        first = false;
         point->error = point->errors[o];
         point->error_noise = point->noise[o];
     }
+    if (!first) return;
+    point->ran = false;
+    snprintf(point->why, sizeof point->why, "nothing to compare: what is measured stays zero");
 }
 
 /* Errors within their noise are no better than their noise. */
@@ -225,113 +211,145 @@ const struct cost_point *cost_fastest(const struct cost_table *table, double acc
     return best;
 }
 
+/* ---- the order of convergence -------------------------------------------------------------- */
+
+/* A setting that changes nothing but the step (and what else the family's words say). */
+static bool of_family(const struct cost_point *point, const char *model, const char *word)
+{
+    char rest[COST_KEY];
+    const size_t length = strlen(model);
+    if (strncmp(point->label, model, length) != 0 || !point->ran || point->reference) return false;
+    if (*word ? !strstr(point->label, word) : strstr(point->label, "integrator") != NULL) {
+        return false;
+    }
+    snprintf(rest, sizeof rest, "%s", point->label + length);
+    char *save = NULL;
+    for (char *key = strtok_r(rest, " ", &save); key; key = strtok_r(NULL, " ", &save)) {
+        if (strncmp(key, "md.dt=", 6) != 0 && (!*word || strcmp(key, word) != 0)) return false;
+    }
+    return true;
+}
+
+/* Points that stand out of their noise by three of it, and whose error is still small. */
+static void find_order(struct cost_table *table, const char *word, const char *label)
+{
+    double x[COST_POINTS_MAX] = {0}, y[COST_POINTS_MAX] = {0};
+    uint32_t n = 0;
+    for (uint32_t k = 0; k < table->count; k++) {
+        const struct cost_point *point = &table->points[k];
+        const bool clear = point->error > 3 * point->error_noise && point->error < 0.3;
+        if (!of_family(point, "md", word) || !clear || !(point->step > 0)) continue;
+        x[n] = log(point->step);
+        y[n++] = log(point->error);
+    }
+    const struct stats_line line = stats_line(x, y, n);
+    if (n < 3 || !isfinite(line.slope)) return;
+    struct cost_order *order = &table->orders[table->order_count++];
+    *order = (struct cost_order){.points = n, .power = line.slope,
+                                 .power_error = line.slope_error};
+    snprintf(order->label, sizeof order->label, "%s", label);
+}
+
 /* ---- the whole ----------------------------------------------------------------------------- */
 
-static unsigned suitable(const struct scene *scene, struct error *error)
-{
-    unsigned set = 0;
-    for (uint32_t k = 0; k < scene->measure.cost.count; k++) {
-        int o = 0;
-        while (o < COST_COUNT && strcmp(names[o], scene->measure.cost.texts[k]) != 0) o++;
-        if (o == COST_COUNT) {
-            error_set_code(error, EXIT_SCENE, "measure.cost: '%.60s' is unknown; it must be one of "
-                "energy, collisions, discharge, height, force, density",
-                scene->measure.cost.texts[k]);
-            return 0;
-        }
-        set |= 1u << o;
-    }
-    if (set) return set;
-    const effects_t effects = scene->effects;
-    if (effects & EFFECT_OBSTACLE) set |= 1u << COST_force;
-    if (effects & (EFFECT_OUTFLOW | EFFECT_INFLOW)) set |= 1u << COST_discharge;
-    if (effects & EFFECT_GRAVITY) set |= 1u << COST_height;
-    else set |= 1u << COST_energy;
-    return set;
-}
-
-/* A model as it chooses itself, for what factors refer to. */
-static bool load_plain(struct setup *setup, const struct cost_request *request, const char *model,
-                       struct error *error)
+/* The setting as keys, from what its model chooses itself. */
+static bool prepare(const struct cost_request *request, const char *setting,
+                    struct cost_point *point, struct error *error)
 {
     struct cost_point plain = {.key_count = 1};
-    snprintf(plain.keys[0], COST_KEY, "model=%s", model);
-    return load(setup, request, &plain, 0, error);
-}
-
-static bool begin(const struct cost_request *request, struct cost_table *table,
-                  struct cost_point *reference, struct error *error)
-{
-    static const struct cost_setting hard = {"ed", ""}, soft = {"md", "md.dt=*0.5"};
     struct setup setup;
-    struct cost_point none = {0};
-    bool done = load(&setup, request, &none, 0, error);
-    if (done) {
-        const struct scene *scene = setup.scene;
-        snprintf(table->scene, sizeof table->scene, "%.60s", scene->name);
-        table->quick = scene->quick;
-        table->seeds = request->seeds;
-        table->observables = suitable(scene, error);
-        const bool rests = scene->effects & (EFFECT_GRAVITY | EFFECT_FRICTION)
-                        && scene->effects & EFFECT_DISSIPATION;
-        const struct cost_setting *first = rests ? &soft : &hard;
-        setup_free(&setup);
-        done = table->observables != 0 && load_plain(&setup, request, first->model, error)
-            && cost_keys(first, &setup, reference);
+    char name[40];
+    snprintf(plain.keys[0], COST_KEY, "model=%s", cost_settings_model(setting, name, sizeof name));
+    snprintf(point->label, sizeof point->label, "%s", setting);
+    bool done = load(&setup, request, &plain, 0, error);
+    if (done && !cost_settings_keys(setting, &setup, point)) {
+        done = error_set_code(error, EXIT_SCENE, "not chosen here");
     }
     setup_free(&setup);
-    snprintf(table->reference, sizeof table->reference, "%s", reference->label);
     return done;
 }
 
-static void try_setting(const struct cost_request *request, const struct cost_setting *setting,
-                        const struct mean *reference, struct cost_table *table)
+/* Reads the scene and what it says about its comparison; the settings are given to the caller. */
+static bool begin(const struct cost_request *request, struct cost_table *table,
+                  struct setup *setup, struct error *error)
 {
-    struct cost_point *point = &table->points[table->count];
-    struct error error = {0};
-    struct setup setup;
-    struct mean *mean = calloc(1, sizeof *mean);
-    *point = (struct cost_point){0};
-    const bool able = mean && load_plain(&setup, request, setting->model, &error);
-    const bool known = able && cost_keys(setting, &setup, point);
-    if (mean) setup_free(&setup);
-    if (known) {
-        if (run_setting(request, point, mean, &error)) compare(table, mean, reference, point);
-        else snprintf(point->why, sizeof point->why, "%.190s", error.text);
-    } else {
-        snprintf(point->label, sizeof point->label, "%s %s", setting->model, setting->keys);
-        snprintf(point->why, sizeof point->why, "%.190s", able ? "not chosen here" : error.text);
+    const struct cost_point none = {0};
+    if (!load(setup, request, &none, 0, error)) return false;
+    const struct scene *scene = setup->scene;
+    const effects_t effects = scene_effects(scene);
+    const bool rests = effects & (EFFECT_GRAVITY | EFFECT_FRICTION)
+                    && effects & EFFECT_DISSIPATION;
+    snprintf(table->scene, sizeof table->scene, "%.60s", scene->name);
+    snprintf(table->reference, sizeof table->reference, "%.100s",
+             scene->measure.reference[0] ? scene->measure.reference
+             : rests ? "md md.dt=*0.5" : "ed ed.t_c=*0.1");
+    table->quick = scene->quick;
+    table->hash = cost_cache_hash(request->path, request->overrides, request->override_count);
+    table->seeds = request->seeds;
+    table->observables = cost_row_chosen(scene, error);
+    return table->observables != 0;
+}
+
+/* Unless the scene has named one, the most exact model that can run it is taken. */
+static bool run_reference(const struct cost_request *request, struct cost_table *table, bool named,
+                          struct runs *reference, struct error *error)
+{
+    static const char *const fallbacks[] = {"ed", "md md.dt=*0.5", "dsmc", "lga"};
+    struct cost_point *point = &table->points[table->count++];
+    struct cost_request more = *request;
+    more.seconds *= 8;                  /* the reference may take its time */
+    bool done = prepare(request, table->reference, point, error);
+    for (size_t k = 0; !done && !named && k < sizeof fallbacks / sizeof *fallbacks; k++) {
+        struct error ignored;
+        snprintf(table->reference, sizeof table->reference, "%s", fallbacks[k]);
+        done = prepare(request, fallbacks[k], point, &ignored);
     }
-    free(mean);
+    if (!done) return false;
+    point->reference = true;
+    if (!run_setting(&more, table->observables, point, reference, error)) return false;
+    compare(table, reference, reference, point);
     if (request->report) request->report(request->context, point);
-    table->count++;
+    return point->ran || error_set(error, "%s: %s", table->scene, point->why);
+}
+
+static void try_setting(const struct cost_request *request, const char *setting,
+                        const struct runs *reference, struct runs *runs, struct cost_table *table)
+{
+    struct error error = {0};
+    if (table->count == COST_POINTS_MAX || strcmp(setting, table->reference) == 0) return;
+    struct cost_point *point = &table->points[table->count++];
+    if (prepare(request, setting, point, &error)
+        && run_setting(request, table->observables, point, runs, &error)) {
+        compare(table, runs, reference, point);
+    } else {
+        snprintf(point->why, sizeof point->why, "%.190s", error.text);
+    }
+    if (request->report) request->report(request->context, point);
 }
 
 bool cost_measure(const struct cost_request *request, struct cost_table *table,
                   struct error *error)
 {
     *table = (struct cost_table){0};
-    assert(request->seeds > 0 && request->seeds <= COST_SEEDS_MAX);
-    struct cost_point *first = &table->points[0];
-    struct mean *reference = calloc(1, sizeof *reference);
-    if (!reference) return error_set(error, "not enough memory");
-    bool done = begin(request, table, first, error);
+    assert(request->seeds > 1 && request->seeds <= COST_SEEDS_MAX);
+    struct setup setup = {0};
+    struct runs *both = calloc(2, sizeof *both), *reference = both, *runs = both + 1;
+    if (!both) return error_set(error, "not enough memory");
+    bool done = begin(request, table, &setup, error)
+        && run_reference(request, table, setup.scene->measure.reference[0] != 0, reference, error);
     if (done) {
-        struct cost_request more = *request;
-        more.seconds *= 4;              /* the reference may take its time */
-        done = run_setting(&more, first, reference, error);
-        first->reference = true;
-        compare(table, reference, reference, first);
-        table->count = 1;
-        if (done && request->report) request->report(request->context, first);
+        const struct key_texts *own = &setup.scene->measure.settings;
+        for (uint32_t k = 0; k < own->count; k++) {
+            try_setting(request, own->texts[k], reference, runs, table);
+        }
+        for (uint32_t k = 0; own->count == 0 && cost_settings_list[k]; k++) {
+            try_setting(request, cost_settings_list[k], reference, runs, table);
+        }
+        find_front(table);
+        find_order(table, "", "md, verlet");
+        find_order(table, "md.integrator=gear", "md, gear");
     }
-    for (const struct cost_setting *s = cost_settings; done && s->model; s++) {
-        char label[COST_KEY];
-        snprintf(label, sizeof label, "%s%s%s", s->model, s->keys[0] ? " " : "", s->keys);
-        if (strcmp(label, first->label) == 0) continue;
-        if (table->count < COST_POINTS_MAX) try_setting(request, s, reference, table);
-    }
-    if (done) find_front(table);
-    free(reference);
+    setup_free(&setup);
+    free(both);
     return done;
 }

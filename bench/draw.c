@@ -25,8 +25,9 @@ int main(int argc, char **argv)
                 return EXIT_FAILED;
             }
             printf("%8u %-8s %-12s %7.0f %7.0f %7.1f %8.1f %9zu\n", counts[k],
-                   by_gl ? "gl" : "splatter", shade ? "rims, shade" : rims ? "rims" : "plain", result.create_ms,
-                   result.first_ms, result.paint_ms, result.encode_ms, result.bytes);
+                   by_gl ? "gl" : "splatter", shade ? "rims, shade" : rims ? "rims" : "plain",
+                   result.create_ms, result.first_ms, result.paint_ms, result.encode_ms,
+                   result.bytes);
             fflush(stdout);
         }
     }

@@ -8,6 +8,7 @@
 
 #include "base/asset.h"
 #include "base/clock.h"
+#include "bench/cost_settings.h"
 #include "bench/hard_look.h"
 #include "run/setup.h"
 
@@ -354,10 +355,16 @@ static bool agree(struct try *try, const char *path)
     const struct key_texts *keys = &scene->hard.agrees_with;
     if (keys->count == 0) return true;
     const char *overrides[2 * OVERRIDES_MAX];
+    char factors[OVERRIDES_MAX][COST_KEY];
     uint32_t count = 0;
     for (; count < try->override_count; count++) overrides[count] = try->overrides[count];
     for (uint32_t k = 0; k < keys->count && k < OVERRIDES_MAX; k++) {
-        overrides[count++] = keys->texts[k];
+        overrides[count] = keys->texts[k];
+        if (strstr(keys->texts[k], "=*")) {
+            if (!cost_settings_key(keys->texts[k], &try->setup, factors[k])) continue;
+            overrides[count] = factors[k];
+        }
+        count++;
     }
     const struct setup_request request = {.path = path, .overrides = overrides,
                                           .override_count = count, .place = true};

@@ -78,7 +78,8 @@ class Browser:
         self.process = subprocess.Popen(
             [find(), "--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run",
              "--disable-dev-shm-usage", "--disable-extensions", "--mute-audio",
-             "--disable-background-networking", "--user-data-dir=" + self.folder,
+             "--disable-background-networking", "--disable-component-update", "--disable-sync",
+             "--user-data-dir=" + self.folder,
              "--window-size=%d,%d" % (width, height), "--remote-debugging-port=0", "about:blank"],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         note = os.path.join(self.folder, "DevToolsActivePort")

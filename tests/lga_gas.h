@@ -134,6 +134,8 @@ static inline void check_cooling(struct lga_rule rule, bool never_warms, const d
      * changed it: at most sqrt(E0 (1 - ratio)) / E0, from the reference's one seed and our three;
      * at late times like the survivors of a start that itself scatters by 1/sqrt(E0). */
     for (int k = 0; k < 4; k++) {
+        print_message("    E/E0 at t = %-4d %.4f (%d seeds)  reference %.4f\n", times[k], mean[k],
+                      SEEDS, expected[k]);
         const double one = sqrt(fmin(1 - expected[k], expected[k]) / 14746.0) + 1 / 14746.0;
         CHECK_NEAR(mean[k], expected[k], 3 * one * sqrt(1 + 1.0 / SEEDS));
     }

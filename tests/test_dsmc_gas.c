@@ -54,6 +54,32 @@ static void test_elastic_grains_collide_at_enskogs_rate(void **unused)
     CHECK_NEAR(relative_rate("method = \"plain\"; weight = 4;"), 1, 0.01);
 }
 
+static void test_grains_of_a_cell_collide_as_often_as_their_speeds_demand(void **unused)
+{
+    (void)unused;
+    /* Ten collisions a step, and what one does to speeds counts for the rest.  Three elastic discs
+     * share R^2 = sum (v - mean)^2 evenly in the four dimensions that are left to them.  A relative
+     * velocity is sqrt(2) times a projection of that sphere onto a plane, which covers the disc of
+     * radius R evenly, so that its mean is sqrt(2) 2/3 R. */
+    const double side = 3, dt = 4, steps = 500000, fraction = 3 * M_PI / 4 / (side * side);
+    const double chi = (1 - 7 * fraction / 16) / ((1 - fraction) * (1 - fraction));
+    struct scenes_run *run = scenes_begin(
+        "until = 1e9; seed = 3; box = [0.0, 0.0, 3.0, 3.0]; left = \"periodic\";"
+        "right = \"periodic\"; bottom = \"periodic\"; top = \"periodic\";"
+        "grains = ({ radius = 0.5; density = 1.2732395447351628; restitution = 1.0; });"
+        "placements = ({ kind = \"square\"; spacing = 1.3; count = 3; temperature = 1.0; });"
+        "dsmc = { method = \"plain\"; cell = 3.0; dt = 4.0; };", "dsmc");
+    const double r = sqrt(2 * simulation_count(&run->sim).kinetic_energy);  /* at rest together */
+    scenes_advance(run, steps * dt);
+    const double collisions = (double)simulation_count(&run->sim).collisions;
+    const double expected = 3 * 2 * chi * M_SQRT2 * 2 / 3 * r / (side * side) * steps * dt;
+    CHECK(expected > 4.9e6);
+    /* 5 million collisions: 0.045 % by chance, three of that.  If pairs faster than the bound only
+     * collided for certain, 0.35 % would be missing. */
+    CHECK_NEAR(collisions / expected, 1, 3 * 0.00045);
+    scenes_end(run);
+}
+
 static void test_the_acceptance_as_printed_would_collide_far_too_often(void **unused)
 {
     (void)unused;
@@ -153,14 +179,16 @@ static void test_a_wall_feels_the_pressure_of_the_gas(void **unused)
         "dsmc = { method = \"plain\"; };", "dsmc");
     scenes_advance(run, 10);
     const struct tally_body before = simulation_tally(&run->sim)->bodies[0];
-    scenes_advance(run, 110);
+    scenes_advance(run, 4010);
     const struct tally_body after = simulation_tally(&run->sim)->bodies[0];
     struct grains grains = scenes_look(run);
     for (uint32_t i = 0; i < grains.count; i++) CHECK(grains.x[i] > 10.49); /* all on one side */
-    /* Points press with n T; their centres have 49 x 50.  About 4500 hits in all, so 2 % by chance
-     * (the spread of 2 v at a wall is about its mean). */
+    /* Points press with n T; their centres have 49 x 50.  n sqrt(T / 2 pi) of them hit a unit of
+     * wall in a unit of time, 5200 in all, each with 2 v of mean square 8 T and mean sqrt(2 pi T):
+     * the sum is known to 1.128 / sqrt(5200) = 1.6 %. */
     const double pressure = grains.count / (49.0 * 50.0);
-    CHECK_NEAR((after.impulse_x - before.impulse_x) / (100 * 50), -pressure, 0.06 * pressure);
+    CHECK_NEAR((after.impulse_x - before.impulse_x) / (4000 * 50), -pressure, 0.06 * pressure);
+    /* Nothing rubs, and nobody meets the wall's end, where its image above begins. */
     CHECK_NEAR(after.impulse_y - before.impulse_y, 0, 1e-6);
     grains_free(&grains);
     scenes_end(run);
@@ -309,6 +337,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_elastic_grains_collide_at_enskogs_rate),
+        cmocka_unit_test(test_grains_of_a_cell_collide_as_often_as_their_speeds_demand),
         cmocka_unit_test(test_the_acceptance_as_printed_would_collide_far_too_often),
         cmocka_unit_test(test_elastic_collisions_keep_energy_and_momentum_to_rounding),
         cmocka_unit_test(test_displaced_grains_have_the_pressure_of_discs),

@@ -79,6 +79,26 @@ static void test_what_is_derived_is_told(void **unused)
     scene_free(scene);
 }
 
+static void test_a_cut_off_long_for_falling_grains_is_warned_of(void **unused)
+{
+    (void)unused;
+    /* d = 1 and g = 4: a grain falls through its diameter in about 1/2. */
+    static const struct { const char *ed; uint32_t warnings; } trials[] = {
+        {"ed = { t_c = 0.014; };", 0}, {"ed = { t_c = 0.016; };", 1}, {"", 0},
+    };
+    for (size_t k = 0; k < sizeof trials / sizeof *trials; k++) {
+        char text[300];
+        struct findings findings;
+        snprintf(text, sizeof text, "until = 1.0; box = [0.0, 0.0, 9.0, 9.0];"
+            "gravity = (0.0, -4.0); grains = ({ radius = 0.5; restitution = 0.9; });"
+            "placements = ({ count = 4; }); %s", trials[k].ed);
+        struct scene *scene = scenes_load(text, "ed", &findings);
+        CHECK(scene && findings.errors == 0 && findings.count == trials[k].warnings);
+        if (trials[k].warnings) CHECK(strstr(findings.list[0].text, "at most 0.015"));
+        scene_free(scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -87,6 +107,7 @@ int main(void)
         cmocka_unit_test(test_a_linear_dashpot_gives_its_restitution_to_hard_discs),
         cmocka_unit_test(test_a_hertz_dashpot_gives_its_restitution_to_hard_discs),
         cmocka_unit_test(test_what_is_derived_is_told),
+        cmocka_unit_test(test_a_cut_off_long_for_falling_grains_is_warned_of),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,8 +43,8 @@ static void test_a_thrown_grain_is_recorded_at_the_angle_where_its_parabola_ends
      * 51 degrees, the 230th from -180 on. */
     char text[600];
     const double center = 4 - 6 * tan(50.5 * M_PI / 180);
-    snprintf(text, sizeof text, "until = 9.0; box = [-1.0, -40.0, 9.0, 40.0]; gravity = (0.0, -2.0);"
-        OPEN "grains = ({ radius = 0.1; restitution = 1.0; });"
+    snprintf(text, sizeof text, "until = 9.0; box = [-1.0, -40.0, 9.0, 40.0];"
+        "gravity = (0.0, -2.0);" OPEN "grains = ({ radius = 0.1; restitution = 1.0; });"
         "placements = ({ region = [-0.1, -0.1, 0.1, 0.1]; kind = \"square\"; count = 1;"
         "                velocity = (3.0, 4.0); });"
         "screens = ({ kind = \"line\"; x = 6.0; center = (0.0, %.17g); bins = 360; });", center);

@@ -8,6 +8,7 @@ SPDX-License-Identifier: GPL-3.0-or-later
 """
 import glob
 import importlib
+import json
 import os
 import shutil
 import signal
@@ -155,6 +156,53 @@ class Export(Shared):
         self.check_h5md(h5py, "kept/trajectory.h5", numpy.arange(31) * 0.02,
                         [(5 * k, frame) for k, frame in enumerate(self.frames)])
 
+    def bare(self, run, name):
+        """A run that kept nothing but its trajectory."""
+        os.makedirs(self.path(name))
+        for file in ("scene.cfg", "manifest.json", "trajectory.h5"):
+            shutil.copy(self.path(run, file), self.path(name, file))
+
+    def test_pictures_maps_and_movies_come_from_a_trajectory_as_from_dumps(self):
+        if not self.hdf5:
+            self.skipTest("built without HDF5")
+        self.bare("kept", "bare")
+        for run in ("kept", "bare"):
+            self.say("frame", run, "-t", "0.4", "-o", run + "-p.png", "--color", "spin")
+            self.say("map", run, "-t", "0.5", "-o", run + "-maps", "--as", "npy")
+            self.say("export", run, "-t", "0.3", "-o", run + "-table", "--to", "csv,npy")
+        # The grains come in another order, and sums over them are rounded otherwise.
+        self.say("frame", "bare", "-t", "0.4", "-o", "bare-q.png", "--color", "spin", "--against",
+                 "kept-p.png", "--tolerance", "1")
+        maps = sorted(os.path.basename(name) for name in glob.glob(self.path("kept-maps/*.npy")))
+        self.assertGreater(len(maps), 1)
+        for name in maps:
+            one, other = (numpy.load(self.path(run + "-maps", name)) for run in ("kept", "bare"))
+            numpy.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9)
+        tables = [numpy.load(glob.glob(self.path(run + "-table/*.npy"))[0])
+                  for run in ("kept", "bare")]
+        for field in ("id", "x", "y", "vx", "vy", "angle", "spin", "radius", "mass", "species"):
+            self.same(tables[1][field], tables[0][field])
+        grain = json.loads(self.say("info", "bare", "--frame", "20", "--grain", "5", "--json"))
+        row = self.frames[4][self.frames[4]["id"] == 5][0]
+        self.assertAlmostEqual(grain["x"], row["x"], delta=1e-8 * abs(row["x"]))
+        if shutil.which("ffmpeg"):
+            self.say("movie", "bare", "-o", "bare.gif", "--every", "0.1")
+            with open(self.path("bare.gif"), "rb") as film:
+                self.assertEqual(film.read(6), b"GIF89a")
+        # What it does not know is refused, and so is what is no trajectory.
+        done = self.call("frame", "bare", "-o", "never.png", "--forces")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no contacts", done.stderr)
+        with open(self.path("kept/trajectory.h5"), "rb") as data:
+            whole = data.read()
+        for torn in (whole[:len(whole) // 2], whole[:100], b"", b"x" * 5000):
+            with open(self.path("bare/trajectory.h5"), "wb") as out:
+                out.write(torn)
+            done = self.call("frame", "bare", "-o", "never.png")
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn("trajectory.h5", done.stderr)
+        self.assertFalse(os.path.exists(self.path("never.png")))
+
     def same_trajectory(self, h5py, one, other):
         with h5py.File(self.path(one), "r") as a, h5py.File(self.path(other), "r") as b:
             names = []
@@ -184,6 +232,12 @@ class Export(Shared):
         with h5py.File(trajectory, "r", swmr=True) as file:
             ids = file["particles/all/id/value"]
             self.same(ids[3, :len(self.frames[0])], self.frames[0]["id"])
+        # What is there so far can be drawn, as the whole run's picture of that time.
+        self.bare(name, name + "-bare")
+        self.say("frame", "kept", "-t", "0.2", "-o", name + "-kept.png", "-s",
+                 'view.range_from="frame"')
+        self.say("frame", name + "-bare", "-t", "0.2", "-o", name + "-early.png", "-s",
+                 'view.range_from="frame"', "--against", name + "-kept.png", "--tolerance", "1")
         self.say("run", name, "--resume")
         self.same_trajectory(h5py, name + "/trajectory.h5", "kept/trajectory.h5")
 

@@ -203,6 +203,32 @@ class Figure(unittest.TestCase):
                   if float(row["x"]) < 1]
         self.assertEqual(set(inside), {0.0})
 
+    def test_density_over_space_and_time_and_its_spectrum_are_plotted(self):
+        if MODE != "few":
+            self.skipTest("few")
+        for what in ("space-time", "spectrum"):
+            done = call(self.folder, "plot", "waves", "--quick", "--of", what, "-o", "plots",
+                        "-j1", "--progress", "none")
+            self.assertEqual(done.returncode, 0, done.stderr)
+        cells = rows(self.path("plots", "plot-space_time.csv"))
+        # Density over its mean, at all times and places: its mean is 1, and a pipe 173 long has
+        # 86 slabs of two diameters.
+        values = [float(row["error"]) for row in cells]
+        self.assertAlmostEqual(sum(values) / len(values), 1, 6)
+        self.assertEqual(len({row["y"] for row in cells}), 86)
+        self.assertEqual(len(cells), 86 * len({row["x"] for row in cells}))
+        # Grains are neither made nor lost: at every time the same sum.
+        sums = {}
+        for row in cells:
+            sums[row["x"]] = sums.get(row["x"], 0) + float(row["error"])
+        self.assertLess(max(sums.values()) - min(sums.values()), 1e-6 * 86)
+        power = [row for row in rows(self.path("plots", "plot-spectrum.csv"))
+                 if row["curve"].startswith("mean over")]
+        self.assertTrue(power and all(float(row["y"]) >= 0 for row in power))
+        done = call(self.folder, "plot", "waves", "--quick", "--of", "gap", "-o", "plots")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("obstacle that is a disc", done.stderr)
+
     def test_plots_go_to_svg_pdf_and_the_terminal(self):
         if MODE != "few" or not HAS_GNUPLOT:
             self.skipTest("few, with gnuplot")

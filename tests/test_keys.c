@@ -179,7 +179,8 @@ static void test_every_number_of_a_scene_is_refused_or_runs(void **unused)
     print_message("%u values tried, %u refused, %u ran\n", tried, refused, ran);
     CHECK(refused > 0 && ran > 0);
     for (uint32_t s = 0; s < SCENE_SECTIONS; s++) {
-        if (sections_tried[s] == 0) fail_msg("no model tried %s", scene_key_sections[s].group->name);
+        if (sections_tried[s] > 0) continue;
+        fail_msg("no model tried %s", scene_key_sections[s].group->name);
     }
 }
 

@@ -53,6 +53,7 @@ static struct lga *make(const struct trial *trial, bool plain, enum lga_simd sim
     lga->tick = 1;
     lga->plain = plain;
     lga->sinks = trial->ground == SINKS;
+    lga->rate.window = 7;
     CHECK(lga_step_allocate(lga));
     CHECK(plain == !lga->bits);
     if (simd < lga->simd) lga->simd = simd;
@@ -107,6 +108,7 @@ static void check_equal(const struct lga *a, const struct lga *b)
     for (uint32_t n = 0; n < a->sites; n++) {
         const struct lga_node p = lga_node_get(a, n), q = lga_node_get(b, n);
         CHECK(is_heap(a, n) == is_heap(b, n));
+        CHECK(lga_rate_of(a, n) == lga_rate_of(b, n));
         if (p.moving == q.moving && p.rest == q.rest && p.kind == q.kind) continue;
         fail_msg("%u x %u, tick %d, node %u: %02x %d, not %02x %d", a->lattice.columns,
                  a->lattice.rows, (int)a->ticks, n, q.moving, q.rest, p.moving, p.rest);
@@ -280,12 +282,36 @@ static void test_dice_fall_as_often_as_they_should(void **unused)
     CHECK(lga_dice_die(1).bits == 0 && lga_dice_die(1).threshold == 1);
 }
 
+static void test_each_collision_is_counted_at_one_node(void **unused)
+{
+    (void)unused;
+    /* Over a window of ten ticks, and what is not over yet counts not. */
+    const struct lga_rule rules[] = {all, pile, level, cooling};
+    for (size_t k = 0; k < sizeof rules / sizeof *rules; k++) {
+        const struct trial trial = {130, 20, TORUS, rules[k]};
+        struct lga *lga = make(&trial, false, LGA_SIMD_AVX512);
+        lga->rate.window = 10;
+        uint64_t before = 0, sum = 0;
+        for (int t = 0; t < 25; t++) {
+            if (t == 10) before = lga->collisions;
+            if (t == 20) sum = lga->collisions - before;
+            lga_step(lga);
+        }
+        double counted = 0;
+        for (uint32_t n = 0; n < lga->sites; n++) counted += 10 * lga_rate_of(lga, n);
+        CHECK(sum > 0);
+        CHECK_NEAR(counted, (double)sum, 1e-6);
+        unmake(lga);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_bits_and_bytes_make_the_same_lattice),
         cmocka_unit_test(test_every_set_of_instructions_and_number_of_threads_gives_the_same_bytes),
         cmocka_unit_test(test_a_grain_held_by_a_wall_waits),
+        cmocka_unit_test(test_each_collision_is_counted_at_one_node),
         cmocka_unit_test(test_dice_fall_as_often_as_they_should),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

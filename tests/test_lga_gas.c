@@ -122,6 +122,13 @@ static void test_in_equilibrium_all_seven_slots_are_equally_full(void **unused)
     CHECK(end.mass == start.mass && end.twice_x == 0 && end.y == 0);
     const double expected = (double)start.mass / lga->sites / 7;
     CHECK_NEAR(expected, 0.17393, 0.003);       /* the reference's density, as far as random */
+    double least = 1, most = 0;
+    for (int d = 0; d < LGA_DIRECTIONS; d++) {
+        least = fmin(least, share[d]);
+        most = fmax(most, share[d]);
+    }
+    print_message("    f of the directions %.5f .. %.5f, of rest %.5f, rho/7 %.5f\n", least, most,
+                  share[LGA_DIRECTIONS], expected);
     for (int p = 0; p < LGA_PLANES; p++) CHECK_NEAR(share[p], expected, 3 * 7e-5);
     gas_free(lga);
 }

@@ -143,8 +143,8 @@ static void test_waves_need_rough_walls_and_a_window_of_filling(void **unused)
 {
     (void)unused;
     /* The reference's contrasts are of one seed each, and a single pipe of waves scatters by a few
-     * percent; near the edge of the window, where waves come and go, by more: 0.1 is allowed,
-     * 0.02 where there are none. */
+     * percent; near the edges of the window, where waves come and go, by more: 0.1 is allowed,
+     * and 0.02 where there never are any. */
     static const struct { struct pipe pipe; double contrast; const char *shown; } cases[] = {
         {{0.5, 0.8, 0.8}, 0.07, "none"}, {{0.5, 0.95, 0.8}, 0.32, "0.32"},
         {{0, 1, 1.0}, 0.41, "0.41"}, {{0.5, 1, 0.4}, 0.19, "0.19"}, {{0.5, 1, 0.6}, 0.85, "0.85"},
@@ -159,7 +159,7 @@ static void test_waves_need_rough_walls_and_a_window_of_filling(void **unused)
                  pipe.filling);
         sample_tell(name, "contrast", &flow.contrast, cases[k].shown);
         CHECK_NEAR(sample_mean(&flow.contrast), cases[k].contrast,
-                   cases[k].contrast < 0.1 ? 0.02 : 0.1);
+                   pipe.roughness < 0.9 ? 0.02 : 0.1);
     }
 }
 

@@ -125,6 +125,8 @@ static void test_rest_grains_follow_a_geometric_law_in_equilibrium(void **unused
     const double z = movers / (1 - movers), expected[4] = {0.7007, 0.2097, 0.0628, 0.0188};
     double sum = 0;
     for (int r = 0; r <= LGA_ROOM; r++) sum += pow(z, r);
+    print_message("    z %.4f (reference 0.2993), P(0..3) %.4f %.4f %.4f %.4f\n", z, share[0],
+                  share[1], share[2], share[3]);
     CHECK_NEAR(z, 0.2993, 3 * 0.0012);
     for (int r = 0; r < 4; r++) {
         const double deviation = sqrt(expected[r] * (1 - expected[r]) / lga->sites);

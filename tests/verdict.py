@@ -10,6 +10,8 @@ import unittest
 def run():
     result = unittest.main(exit=False, verbosity=1).result
     failed = len(result.failures) + len(result.errors)
+    for test, reason in result.skipped:
+        print(f"skipped {test.id().rsplit('.', 1)[-1]}: {reason}")
     print(f"[  PASSED  ] {result.testsRun - failed - len(result.skipped)} test(s).")
     if failed:
         print(f"[  FAILED  ] {failed} test(s).")

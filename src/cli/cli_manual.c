@@ -44,11 +44,8 @@ static void print_option(const struct option_row *row)
 
 static void write_command(const struct command *command)
 {
-    printf("## sandreel ");
-    print_plain(command->name);
-    printf(" [OPTIONS] ");
-    print_plain(command->operands);
-    printf("\n\n");
+    /* In a heading scdoc takes every character for itself. */
+    printf("## sandreel %s [OPTIONS] %s\n\n", command->name, command->operands);
     print_plain(command->summary);
     printf(".\n");
     if (*command->details) {

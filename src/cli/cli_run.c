@@ -54,25 +54,40 @@ static int tell_plan(const struct setup *setup, const char *directory)
     return EXIT_DONE;
 }
 
+/* What of `unit` costs, by part. */
+static void tell_rates(const struct run_result *result, const char *unit, double units,
+                       double factor, const char *seconds)
+{
+    fprintf(stderr, "%s:", unit);
+    for (int p = 0; p < PART_COUNT; p++) {
+        fprintf(stderr, "%s %s %.3g %s", p ? "," : "", parts_name((enum part)p),
+                factor * run_part_seconds(result, (enum part)p) / units, seconds);
+    }
+    fputc('\n', stderr);
+}
+
 /* Which effects the run had, which it left out, and where its time went. */
 static void tell_costs(const struct run_result *result, const struct scene *scene)
 {
-    char words[600];
+    char words[600], unit[60];
     const double wall = result->wall > 0 ? result->wall : 1;
     effect_words(result->effects, words, sizeof words);
     fprintf(stderr, "effects: %s\n", words);
     effect_words((((effects_t)1 << EFFECT_COUNT) - 1) & ~result->effects, words, sizeof words);
     fprintf(stderr, "left out: %s\ncost:", words);
     for (int p = 0; p < PART_COUNT; p++) {
-        fprintf(stderr, " %s %.1f %%%s", parts_name((enum part)p),
-                100 * result->parts.wall[p] / wall, p + 1 < PART_COUNT ? "," : ";");
+        fprintf(stderr, "%s %s %.1f %%", p ? "," : "", parts_name((enum part)p),
+                100 * run_part_seconds(result, (enum part)p) / wall);
     }
-    if (result->per_time > 0) {
-        fprintf(stderr, " %.3g s for a time of 1 %s, %.3g us a step\n", result->per_time,
-                scene_unit(scene, "time"), 1e6 * result->per_step);
-    } else {
-        fprintf(stderr, " nothing was simulated\n");
+    fprintf(stderr, " of %.3g s\n", result->wall);
+    if (!(result->span > 0 && result->work > 0)) {
+        fprintf(stderr, "nothing was simulated\n");
+        return;
     }
+    snprintf(unit, sizeof unit, "cost of 1 %s", *scene_unit(scene, "time")
+             ? scene_unit(scene, "time") : "unit of time");
+    tell_rates(result, unit, result->span, 1, "s");
+    tell_rates(result, "cost of a step", result->work, 1e6, "us");
 }
 
 static void tell_result(const struct run_result *result, const char *directory)

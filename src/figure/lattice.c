@@ -5,7 +5,6 @@
  */
 #include "figure/strip.h"
 
-#include "draw/colormap.h"
 #include "measure/heap.h"
 #include "measure/stats.h"
 #include "measure/waves.h"
@@ -119,34 +118,26 @@ bool lattice_hourglass(struct figure_job *job, struct error *error)
 
 /* --- waves in a pipe --- */
 
-enum { PIPE_ROWS = 400, SLAB_ROWS = 20 };
+enum { PIPE_ROWS = 400, SLAB_ROWS = 20, FINE_ROWS = 4 };
 
-/* Time runs upwards, the pipe to the right; dark is empty. */
-static bool draw_space_time(const struct waves *waves, uint32_t looks, const char *path,
-                            struct error *error)
+/* The last looks; time to the right, the pipe upwards. */
+static void draw_space_time(const struct waves *waves, uint32_t looks, struct chart *chart)
 {
-    const uint32_t across = 24, down = 2;       /* pixels of a slab and of a look */
     const uint32_t shown = looks < waves->count ? looks : waves->count;
-    const uint8_t (*colours)[3] = colormap_find("inferno");
-    struct image image;
-    double most = 0;
-    if (!image_create(&image, waves->slabs * across, shown * down, error)) return false;
-    const size_t first = (size_t)(waves->count - shown) * waves->slabs;
-    for (size_t k = 0; k < (size_t)shown * waves->slabs; k++) {
-        most = fmax(most, waves->density[first + k]);
+    const uint32_t first = waves->count - shown;
+    double mean = 0;
+    for (size_t k = 0; k < (size_t)waves->count * waves->slabs; k++) {
+        mean += waves->density[k] / ((double)waves->count * waves->slabs);
     }
-    for (uint32_t y = 0; y < image.height; y++) {
-        const size_t row = first + (size_t)(shown - 1 - y / down) * waves->slabs;
-        for (uint32_t x = 0; x < image.width; x++) {
-            const double share = waves->density[row + x / across] / most;
-            const uint8_t *rgb = colours[(int)(share * (COLORMAP_SIZE - 1))];
-            uint8_t *pixel = image.rgba + 4 * ((size_t)y * image.width + x);
-            pixel[0] = rgb[0], pixel[1] = rgb[1], pixel[2] = rgb[2], pixel[3] = 255;
+    chart_begin(chart, "Waves of density in a rough pipe", "t [ticks]", "y [nodes]");
+    chart_curve(chart, CHART_CELLS, "density over its mean");
+    for (uint32_t s = 0; s < waves->slabs; s++) {
+        const double y = waves->low + (s + 0.5) * (waves->high - waves->low) / waves->slabs;
+        for (uint32_t k = first; k < waves->count; k++) {
+            chart_error(chart, (k + 1) * waves->interval, y,
+                        waves->density[(size_t)k * waves->slabs + s] / mean);
         }
     }
-    const bool done = image_save(&image, path, 6, NULL, 0, error);
-    image_free(&image);
-    return done;
 }
 
 static double mean_speed(const struct grains *grains)
@@ -163,9 +154,8 @@ bool lattice_pipe(struct figure_job *job, struct error *error)
     const double height = PIPE_ROWS * sqrt(3) / 2;
     struct lab lab = {0};
     struct lab_wish wish = {.scene = "waves"};
-    struct waves waves = {0};
-    struct chart chart;
-    char path[FILE_PATH_MAX];
+    struct waves waves = {0}, fine = {0};
+    struct chart chart, picture;
     double *power = NULL, step = 0, speed = 0;
     uint32_t bins = 0;
     lab_set(&wish, "box=[0,0,12,%.8g]", height);
@@ -175,11 +165,13 @@ bool lattice_pipe(struct figure_job *job, struct error *error)
                 "power");
     chart.log_x = chart.log_y = true;
     bool done = lab_open(&lab, job, &wish, error)
-        && waves_create(&waves, 0, height, PIPE_ROWS / SLAB_ROWS, looks, interval, error);
+        && waves_create(&waves, 0, height, PIPE_ROWS / SLAB_ROWS, looks, interval, error)
+        && waves_create(&fine, 0, height, PIPE_ROWS / FINE_ROWS, looks, interval, error);
     for (uint32_t k = 0; done && k < looks; k++) {
         done = lab_go(&lab, (k + 1) * interval, error);
         if (!done) break;
         waves_add(&waves, &lab.footage.grains);
+        waves_add(&fine, &lab.footage.grains);
         if (k >= settling) speed += mean_speed(&lab.footage.grains) / (looks - settling);
     }
     done = done && waves_spectrum(&waves, settling, &power, &bins, &step, error);
@@ -202,13 +194,14 @@ bool lattice_pipe(struct figure_job *job, struct error *error)
                         "reproduced: exponent %.2f +- %.2f from f = 2.4e-3 to 5e-2", line.slope,
                         line.slope_error);
         }
-        figure_picture(job, "space-time", path);
-        done = draw_space_time(&waves, 400, path, error);
+        draw_space_time(&fine, 400, &picture);
+        done = figure_chart(job, done, &picture, "space-time", error);
     }
     free(power);
     waves_free(&waves);
+    waves_free(&fine);
     lab_close(&lab);
-    figure_choose(job, "eleven nodes wide, 400 rows, p = g = 0.5, b = 1; space-time: the pipe to "
-                  "the right, the last 1600 ticks upwards, bright is dense");
+    figure_choose(job, "eleven nodes wide, 400 rows, p = g = 0.5, b = 1; space-time: the last 1600 "
+                  "ticks");
     return figure_chart(job, done, &chart, "spectrum", error);
 }

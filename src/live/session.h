@@ -5,8 +5,8 @@
  * what session.log says; looking, pausing and going on never change a run.
  *
  * Its folder holds start.cfg (the scene as it was given), session.log, log.csv, what was saved on
- * command, and in the end scene.cfg: the scene with every change as a phase, which `sandreel run` and
- * `frame` repeat.
+ * command, and in the end scene.cfg: the scene with every change as a phase, which `sandreel run`
+ * and `frame` repeat.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */

@@ -70,6 +70,15 @@ void chart_error(struct chart *chart, double x, double y, double error)
 
 void chart_point(struct chart *chart, double x, double y) { chart_error(chart, x, y, NAN); }
 
+void chart_label(struct chart *chart, double x, double y, const char *text)
+{
+    if (chart->label_count == CHART_LABELS) return;
+    struct chart_label *label = &chart->labels[chart->label_count++];
+    label->x = x;
+    label->y = y;
+    snprintf(label->text, sizeof label->text, "%s", text);
+}
+
 void chart_law(struct chart *chart, const char *name, double (*law)(double x, const void *context),
                const void *context, double x0, double x1, uint32_t count)
 {

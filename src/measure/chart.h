@@ -17,10 +17,15 @@ enum chart_style {
     CHART_POINTS,
     CHART_ERRORS,               /* points with error bars */
     CHART_STEPS,                /* histograms */
-    CHART_LAW                   /* a law or a fit: dashed, black */
+    CHART_LAW,                  /* a law or a fit: dashed, black */
+    CHART_CELLS                 /* a grid of cells, x running fastest, coloured by a value in the
+                                 * place of the error; named by the curve beside a colour bar; a
+                                 * chart of cells has no other curve */
 };
 
-enum { CHART_CURVES = 24, CHART_TEXT = 160 };
+enum { CHART_CURVES = 24, CHART_TEXT = 160, CHART_LABELS = 64, CHART_LABEL_TEXT = 48 };
+
+struct chart_label { double x, y; char text[CHART_LABEL_TEXT]; };
 
 struct chart_curve {
     char     name[CHART_TEXT];
@@ -37,6 +42,8 @@ struct chart {
     const char *key;            /* where the names of the curves stand; NULL: "top right" */
     uint32_t count;
     struct chart_curve curves[CHART_CURVES];
+    uint32_t label_count;
+    struct chart_label labels[CHART_LABELS];    /* words beside points */
     bool   failed;
 };
 
@@ -50,6 +57,9 @@ void chart_curve(struct chart *chart, enum chart_style style, const char *format
 
 void chart_point(struct chart *chart, double x, double y);
 void chart_error(struct chart *chart, double x, double y, double error);
+
+/* Words to the right of a place, in small letters.  Past CHART_LABELS they are dropped. */
+void chart_label(struct chart *chart, double x, double y, const char *text);
 
 /* Straight from a function: `count` points from x0 to x1, evenly or on a logarithmic scale like
  * the chart's. */

@@ -24,14 +24,27 @@ void waves_free(struct waves *waves)
     *waves = (struct waves){0};
 }
 
+static void add(const struct waves *waves, double place, double number, double *now)
+{
+    const double at = (place - waves->low) / (waves->high - waves->low) * waves->slabs;
+    if (at >= 0 && at < waves->slabs) now[(uint32_t)at] += number;
+}
+
 void waves_add(struct waves *waves, const struct grains *grains)
 {
     if (waves->count == waves->room) return;
     double *now = waves->density + (size_t)waves->count++ * waves->slabs;
-    for (uint32_t i = 0; i < grains->count; i++) {
-        const double at = (grains->y[i] - waves->low) / (waves->high - waves->low) * waves->slabs;
-        if (at >= 0 && at < waves->slabs) now[(uint32_t)at] += 1;
+    const struct field *sample = &grains->sample;
+    if (sample->values) {
+        for (size_t k = 0; k < (size_t)sample->nx * sample->ny; k++) {
+            const size_t cell = waves->level ? k % sample->nx : k / sample->nx;
+            const double start = waves->level ? sample->x0 : sample->y0;
+            add(waves, start + ((double)cell + 0.5) * sample->cell, sample->values[k], now);
+        }
+        return;
     }
+    const double *place = waves->level ? grains->x : grains->y;
+    for (uint32_t i = 0; i < grains->count; i++) add(waves, place[i], 1, now);
 }
 
 double waves_contrast(const struct waves *waves, uint32_t from)

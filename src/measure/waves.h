@@ -12,7 +12,8 @@
 
 struct waves {
     uint32_t slabs, room, count;        /* across the pipe; looks there is room for, and taken */
-    double   low, high;         /* the range of y that is looked at */
+    double   low, high;         /* the range of y that is looked at ... */
+    bool     level;             /* ... or of x; false from the start */
     double   interval;          /* between two looks */
     double  *density;           /* grains in a slab: density[look * slabs + slab] */
 };
@@ -21,7 +22,8 @@ bool waves_create(struct waves *waves, double low, double high, uint32_t slabs, 
                   double interval, struct error *error);
 void waves_free(struct waves *waves);
 
-/* The next look; more than there is room for are passed over. */
+/* The next look, at the list of grains or, where there is none, at the sample; more than there is
+ * room for are passed over. */
 void waves_add(struct waves *waves, const struct grains *grains);
 
 /* Root mean square of the density of slabs about the mean of all, over that mean, from look `from`

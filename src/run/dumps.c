@@ -6,6 +6,7 @@
 
 #include "measure/dump.h"
 #include "run/folder.h"
+#include "run/h5md_read.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -66,17 +67,34 @@ bool dumps_add(struct dumps *dumps, const struct grains *grains, uint64_t steps,
     return dump_index_append(path, &entry, error) && remember(&dumps->index, &entry, error);
 }
 
+static char *trajectory_path(char path[FILE_PATH_MAX], const char *run)
+{
+    return folder_path(path, run, "trajectory.h5");
+}
+
+bool dumps_kept(const char *run)
+{
+    char path[FILE_PATH_MAX];
+    return file_exists(folder_path(path, run, "dump/index.csv"))
+        || file_exists(trajectory_path(path, run));
+}
+
 bool dumps_open(struct dumps *dumps, const char *run, struct error *error)
 {
     char path[FILE_PATH_MAX];
     *dumps = (struct dumps){0};
+    if (!dumps_kept(run)) {
+        return error_set(error, "%s: this run kept no grain states; run it again with "
+                         "-s output.dump=true, or -s output.trajectory=DT", run);
+    }
     folder_path(dumps->directory, run, "dump");
     index_path(dumps, path);
     if (!file_exists(path)) {
-        return error_set(error, "%s: this run kept no grain states; run it again with "
-                         "-s output.dump=true", run);
+        dumps->trajectory = h5md_read_open(trajectory_path(path, run), &dumps->index, error);
+        if (!dumps->trajectory) return false;
+    } else if (!dump_index_load(path, &dumps->index, error)) {
+        return false;
     }
-    if (!dump_index_load(path, &dumps->index, error)) return false;
     return dumps->index.count > 0 || error_set(error, "%s: no frame in it", path);
 }
 
@@ -86,6 +104,11 @@ bool dumps_load(const struct dumps *dumps, uint32_t k, struct grains *grains,
     assert(k < dumps->index.count);
     const struct dump_entry *entry = &dumps->index.entries[k];
     char path[FILE_PATH_MAX], contacts[FILE_PATH_MAX];
+    if (dumps->trajectory) {
+        const bool done = h5md_read_frame(dumps->trajectory, entry->frame, grains, error);
+        grains->time = entry->time;
+        return done;
+    }
     folder_path(path, dumps->directory, "%06u.npy", entry->frame);
     folder_path(contacts, dumps->directory, "%06u.contacts.npy", entry->frame);
     grains_free(grains);
@@ -102,6 +125,7 @@ uint32_t dumps_nearest(const struct dumps *dumps, double t)
 
 void dumps_close(struct dumps *dumps)
 {
+    h5md_read_close(dumps->trajectory);
     dump_index_free(&dumps->index);
     *dumps = (struct dumps){0};
 }

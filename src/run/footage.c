@@ -12,8 +12,7 @@
 
 bool footage_has_dumps(const char *path)
 {
-    char index[FILE_PATH_MAX];
-    return setup_is_run(path) && file_exists(folder_path(index, path, "dump/index.csv"));
+    return setup_is_run(path) && dumps_kept(path);
 }
 
 bool footage_open(struct footage *footage, const struct setup *setup, const char *path,
@@ -22,7 +21,13 @@ bool footage_open(struct footage *footage, const struct setup *setup, const char
     *footage = (struct footage){.setup = setup, .contacts = contacts};
     footage->from_dumps = footage_has_dumps(path);
     footage->wall = footage->from_dumps ? NAN : 0;
-    if (footage->from_dumps) return dumps_open(&footage->dumps, path, error);
+    if (footage->from_dumps) {
+        if (!dumps_open(&footage->dumps, path, error)) return false;
+        return !(contacts && footage->dumps.trajectory)
+            || error_set_code(error, EXIT_USAGE, "%s: trajectory.h5 knows no contacts, so no "
+                              "forces can be drawn; run it again with -s output.dump=true "
+                              "-s output.contacts=true", path);
+    }
     return simulation_create(&footage->sim, setup->model, setup->scene, error);
 }
 

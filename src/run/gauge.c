@@ -6,12 +6,14 @@
 
 #include "measure/distribution.h"
 #include "measure/energy.h"
+#include "measure/gap.h"
 #include "measure/heap.h"
 #include "measure/pair.h"
 #include "measure/spectrum.h"
 #include "measure/stats.h"
 #include "measure/table.h"
 #include "run/folder.h"
+#include "run/gauge_waves.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -40,7 +42,11 @@ const struct gauge gauge_list[] = {
 
 const struct gauge *gauge_find(const char *name)
 {
-    for (const struct gauge *g = gauge_list; g->name; g++) if (strcmp(g->name, name) == 0) return g;
+    for (const struct gauge *g = gauge_list; g->name; g++) {
+        size_t k = 0;
+        while (g->name[k] && (g->name[k] == name[k] || (g->name[k] == '_' && name[k] == '-'))) k++;
+        if (g->name[k] == name[k]) return g;
+    }
     return NULL;
 }
 
@@ -63,8 +69,8 @@ static void label(char text[CHART_TEXT], const char *name, const char *unit)
     else snprintf(text, CHART_TEXT, "%s", name);
 }
 
-static void label_axes(const struct gauge_job *job, struct chart *chart, const char *x,
-                       const char *x_dimension, const char *y, const char *y_dimension)
+void gauge_label_axes(const struct gauge_job *job, struct chart *chart, const char *x,
+                      const char *x_dimension, const char *y, const char *y_dimension)
 {
     label(chart->x_label, x, scene_unit(job->setup->scene, x_dimension));
     label(chart->y_label, y, scene_unit(job->setup->scene, y_dimension));
@@ -104,7 +110,7 @@ static bool draw_energy(struct gauge_job *job, struct chart *chart, struct error
 {
     struct table log;
     if (!load_log(job, &log, error)) return false;
-    label_axes(job, chart, "time", "time", "energy", "energy");
+    gauge_label_axes(job, chart, "time", "time", "energy", "energy");
     add_column(chart, &log, "kinetic_energy", "kinetic");
     add_column(chart, &log, "rotational_energy", "rotational");
     add_column(chart, &log, "potential_energy", "potential");
@@ -116,7 +122,7 @@ static bool draw_contacts(struct gauge_job *job, struct chart *chart, struct err
 {
     struct table log;
     if (!load_log(job, &log, error)) return false;
-    label_axes(job, chart, "time", "time", "C/N, a collision counted for both grains", "1");
+    gauge_label_axes(job, chart, "time", "time", "C/N, a collision counted for both grains", "1");
     const int time = table_find(&log, "time"), grains = table_find(&log, "grains");
     static const char *const names[] = {"collisions", "collisions_elastic"};
     for (int k = 0; k < 2; k++) {
@@ -135,7 +141,7 @@ static bool draw_flux(struct gauge_job *job, struct chart *chart, struct error *
 {
     struct table log;
     if (!load_log(job, &log, error)) return false;
-    label_axes(job, chart, "time", "time", "grains per time", "1/time");
+    gauge_label_axes(job, chart, "time", "time", "grains per time", "1/time");
     static const char *const names[] = {"grains_in", "grains_out"};
     const int time = table_find(&log, "time");
     for (int k = 0; k < 2; k++) {
@@ -175,7 +181,7 @@ static bool draw_force(struct gauge_job *job, struct chart *chart, struct error 
 {
     struct table log;
     if (!load_log(job, &log, error)) return false;
-    label_axes(job, chart, "time", "time", "force", "force");
+    gauge_label_axes(job, chart, "time", "time", "force", "force");
     bool done = true;
     for (uint32_t k = 0; done && chart->count + 2 <= CHART_CURVES; k++) {
         char fx[TABLE_NAME], fy[TABLE_NAME];
@@ -195,7 +201,7 @@ static bool draw_stress(struct gauge_job *job, struct chart *chart, struct error
 {
     struct table log;
     if (!load_log(job, &log, error)) return false;
-    label_axes(job, chart, "time", "time", "stress, pressure negative", "1");
+    gauge_label_axes(job, chart, "time", "time", "stress, pressure negative", "1");
     for (uint32_t c = 0; c < log.columns && chart->count < CHART_CURVES; c++) {
         if (strncmp(log.names[c], "stress_", 7) == 0) {
             add_column(chart, &log, log.names[c], log.names[c] + 7);
@@ -228,7 +234,7 @@ static bool draw_impact(struct gauge_job *job, struct chart *chart, struct error
 {
     struct table table;
     if (!load(job, "impact.csv", "-s measure.impact_parameters=true", &table, error)) return false;
-    label_axes(job, chart, "b/d", "1", "P(b/d)", "1");
+    gauge_label_axes(job, chart, "b/d", "1", "P(b/d)", "1");
     chart->y_range[0] = 0;
     for (uint32_t r = first_group(&table, CHART_CURVES); r < table.rows;) {
         const uint32_t end = group_end(&table, r);
@@ -271,7 +277,7 @@ static bool draw_frequency(struct gauge_job *job, struct chart *chart, struct er
     if (!load(job, "collisions.csv", "-s measure.collision_counts=true", &table, error)) {
         return false;
     }
-    label_axes(job, chart, "contacts of a grain", "1", "share of the grains", "1");
+    gauge_label_axes(job, chart, "contacts of a grain", "1", "share of the grains", "1");
     chart->log_x = chart->log_y = true;
     bool done = true;
     for (uint32_t r = first_group(&table, CHART_CURVES / 2); done && r < table.rows;) {
@@ -304,7 +310,7 @@ static bool draw_scattering(struct gauge_job *job, struct chart *chart, struct e
 {
     struct table table;
     if (!load(job, "screen0.csv", "a screen and a source", &table, error)) return false;
-    label_axes(job, chart, "angle [degrees]", "1", "dm / dTheta [1/rad]", "1");
+    gauge_label_axes(job, chart, "angle [degrees]", "1", "dm / dTheta [1/rad]", "1");
     chart_curve(chart, CHART_ERRORS, "mass");
     for (uint32_t r = 0; r < table.rows; r++) {
         chart_error(chart, table_at(&table, r, table_find(&table, "angle")),
@@ -323,7 +329,7 @@ static bool draw_anisotropy(struct gauge_job *job, struct chart *chart, struct e
 {
     struct footage *footage = job->footage;
     const uint32_t looks = footage->from_dumps ? footage->dumps.index.count : SERIES_LOOKS + 1;
-    label_axes(job, chart, "time", "time", "(Kx - Ky)/K", "1");
+    gauge_label_axes(job, chart, "time", "time", "(Kx - Ky)/K", "1");
     chart->y_range[0] = -1;
     chart->y_range[1] = 1;
     chart_curve(chart, CHART_LINES, "all grains");
@@ -356,7 +362,7 @@ static bool draw_structure(struct gauge_job *job, struct chart *chart, struct er
                                       &spectrum, error)) {
         return false;
     }
-    label_axes(job, chart, "k = l / wavelength", "1", "S(k)", "1");
+    gauge_label_axes(job, chart, "k = l / wavelength", "1", "S(k)", "1");
     chart->log_x = chart->log_y = true;
     chart_curve(chart, CHART_LINES, "mean over shells");
     for (uint32_t s = 1; s < spectrum.shells; s++) {
@@ -378,7 +384,7 @@ static bool draw_pair(struct gauge_job *job, struct chart *chart, struct error *
         || !pair_create(&job->footage->grains, scene, reach, 100, &pair, error)) {
         return false;
     }
-    label_axes(job, chart, "r in mean diameters", "1", "g(r)", "1");
+    gauge_label_axes(job, chart, "r in mean diameters", "1", "g(r)", "1");
     chart_curve(chart, CHART_LINES, "%u grains", pair.grains);
     for (uint32_t b = 0; b < pair.bins; b++) {
         chart_point(chart, (b + 0.5) * pair.width / d, pair.g[b]);
@@ -402,7 +408,7 @@ static bool draw_heap(struct gauge_job *job, struct chart *chart, struct error *
     if (!heap_create(g, x0, x1, bins, base, speed_max, &heap, error)) return false;
     const bool done = heap_tail(&heap, d, 0.95, &tail, error);
     const struct heap_slope slope = heap_slope(&heap, 0.15, 0.85);
-    label_axes(job, chart, "x", "length", "height", "length");
+    gauge_label_axes(job, chart, "x", "length", "height", "length");
     chart_curve(chart, CHART_POINTS, "surface");
     for (uint32_t b = 0; b < bins; b++) {
         if (heap.height[b] > 0) chart_point(chart, x0 + (b + 0.5) * heap.width, heap.height[b]);
@@ -420,4 +426,60 @@ static bool draw_heap(struct gauge_job *job, struct chart *chart, struct error *
              tail.tail_error, tail.height, tail.height_error, tail.rms, tail.rms_line);
     heap_free(&heap);
     return done;
+}
+
+/* The disc of the first obstacle; NULL if that has none. */
+static const struct wall *round_obstacle(const struct scene *scene)
+{
+    for (uint32_t w = 0; w < scene->wall_count; w++) {
+        if (scene->walls[w].body == 0 && scene->walls[w].shape == WALL_DISC) {
+            return &scene->walls[w];
+        }
+    }
+    return NULL;
+}
+
+static bool draw_gap(struct gauge_job *job, struct chart *chart, struct error *error)
+{
+    const struct scene *scene = job->setup->scene;
+    struct footage *footage = job->footage;
+    const struct wall *disc = round_obstacle(scene);
+    const double d = 2 * scene->radius_mean, end = footage_end(footage);
+    struct gap gap;
+    if (!disc) {
+        return error_set_code(error, EXIT_USAGE, "%s: a gap is measured before an obstacle that is "
+                              "a disc; this scene has none", job->run);
+    }
+    const double center[2] = {disc->cx, disc->cy};
+    if (!gap_create(&gap, center, disc->radius, 30 * d, 60, error)) return false;
+    /* What is built up at first is there; as many looks as frames. */
+    const uint32_t looks = footage->from_dumps ? footage->dumps.index.count : SERIES_LOOKS;
+    bool done = true;
+    for (uint32_t k = looks / 2; done && k < looks; k++) {
+        done = footage_go(footage, footage->from_dumps ? footage->dumps.index.entries[k].time
+                                                       : end * (k + 1) / looks, error);
+        if (done) gap_add(&gap, &footage->grains);
+    }
+    if (done && gap.seen > 0) {
+        gauge_label_axes(job, chart, "distance from the obstacle", "length", "area fraction", "1");
+        chart_curve(chart, CHART_LINES, "within 20 degrees of the stream's axis");
+        for (uint32_t b = 0; b < gap.bins; b++) {
+            chart_point(chart, (b + 0.5) * gap.width, gap_fraction(&gap, b));
+        }
+        snprintf(job->note, sizeof job->note, "gap %.4g %s, in mean diameters %.3g (to half of the "
+                 "largest area fraction, less a radius)", gap_width(&gap),
+                 scene_unit(scene, "length"), gap_width(&gap) / d);
+    }
+    gap_free(&gap);
+    return done;
+}
+
+static bool draw_space_time(struct gauge_job *job, struct chart *chart, struct error *error)
+{
+    return gauge_waves_space_time(job, chart, error);
+}
+
+static bool draw_spectrum(struct gauge_job *job, struct chart *chart, struct error *error)
+{
+    return gauge_waves_spectrum(job, chart, error);
 }

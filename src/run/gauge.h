@@ -22,7 +22,10 @@
     X(anisotropy, "(Kx - Ky)/K against time (frames)")                                          \
     X(structure,  "structure factor S(k) (at a time)")                                          \
     X(pair,       "pair correlation g(r) (at a time)")                                          \
-    X(heap,       "profile of a heap and eq. 8 of the simplified models (at a time)")
+    X(heap,       "profile of a heap and eq. 8 of the simplified models (at a time)")           \
+    X(gap,        "area fraction before a round obstacle, and the gap (second half of the run)") \
+    X(space_time, "density along the box against time, as a map (frames, or at the log's times)") \
+    X(spectrum,   "power of the density in slabs against frequency (the same)")
 
 struct gauge_job {
     const char *run;            /* its directory */
@@ -44,6 +47,10 @@ extern const struct gauge gauge_list[];         /* ends with a NULL name */
 bool gauge_draw(const struct gauge *gauge, struct gauge_job *job, struct chart *chart,
                 struct error *error);
 
-const struct gauge *gauge_find(const char *name);       /* NULL: none */
+const struct gauge *gauge_find(const char *name);       /* '-' is '_'; NULL: none */
+
+/* Names the axes with their units; "1": a plain number. */
+void gauge_label_axes(const struct gauge_job *job, struct chart *chart, const char *x,
+                      const char *x_dimension, const char *y, const char *y_dimension);
 
 #endif

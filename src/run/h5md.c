@@ -10,6 +10,7 @@
 #ifdef SANDREEL_HDF5
 
 #include "run/build.h"
+#include "run/h5md_layout.h"
 
 #include <fcntl.h>
 #include <hdf5.h>
@@ -19,20 +20,10 @@
 #include <string.h>
 #include <unistd.h>
 
-/* X(name in the file, member of struct grains, HDF5 type, its dimension) of one number a grain */
-#define SCALARS(X)                                                              \
-    X(id,               id,             H5T_NATIVE_UINT32, "1")                 \
-    X(species,          species,        H5T_NATIVE_UINT16, "1")                 \
-    X(mass,             mass,           H5T_NATIVE_DOUBLE, "mass")              \
-    X(radius,           radius,         H5T_NATIVE_DOUBLE, "length")            \
-    X(angle,            angle,          H5T_NATIVE_DOUBLE, "1")                 \
-    X(angular_velocity, spin,           H5T_NATIVE_DOUBLE, "1/time")            \
-    X(collision_rate,   collision_rate, H5T_NATIVE_FLOAT,  "1/time")
-
 enum {
     ELEMENT_position, ELEMENT_velocity,
 #define X(name, member, type, dimension) ELEMENT_##name,
-    SCALARS(X)
+    H5MD_SCALARS(X)
 #undef X
     ELEMENTS
 };
@@ -40,7 +31,7 @@ enum {
 static const struct { const char *name, *dimension; int components; } elements[ELEMENTS] = {
     {"position", "length", 2}, {"velocity", "speed", 2},
 #define X(name, member, type, dimension) {#name, dimension, 1},
-    SCALARS(X)
+    H5MD_SCALARS(X)
 #undef X
 };
 
@@ -82,7 +73,7 @@ static hid_t type_of(int element)
 {
     switch (element) {
 #define X(name, member, type, dimension) case ELEMENT_##name: return type;
-    SCALARS(X)
+    H5MD_SCALARS(X)
 #undef X
     default: return H5T_NATIVE_DOUBLE;
     }
@@ -221,7 +212,7 @@ static void make_element(struct h5md *h5md, int element, const struct scene *sce
 {
     static const double none = NAN;
     static const float none_float = NAN;
-    static const uint32_t none_whole = UINT32_MAX;
+    static const uint32_t none_whole = H5MD_NO_ID;
     const hid_t type = type_of(element), group = make_group(h5md, h5md->group,
                                                             elements[element].name);
     const void *fill = H5Tget_class(type) == H5T_INTEGER ? (const void *)&none_whole
@@ -405,7 +396,7 @@ bool h5md_add(struct h5md *h5md, const struct grains *grains, uint64_t steps, st
     write_pairs(h5md, ELEMENT_velocity, grains->vx, grains->vy, grains->count);
 #define X(name, member, type, dimension) \
     write_rows(h5md, ELEMENT_##name, grains->count, grains->member);
-    SCALARS(X)
+    H5MD_SCALARS(X)
 #undef X
     h5md->frames++;
     return !h5md->failed || fail(h5md, "this frame of the trajectory could not be written", error);

@@ -49,6 +49,14 @@ static json_t *counts(const struct run_result *result)
     return list;
 }
 
+/* What a unit of simulated time, and what a step costs; nothing of a run that did nothing. */
+static void add_rates(json_t *part, double seconds, const struct run_result *result)
+{
+    if (!(result->span > 0 && result->work > 0)) return;
+    json_object_set_new(part, "per_simulated_time", json_real(seconds / result->span));
+    json_object_set_new(part, "per_step", json_real(seconds / result->work));
+}
+
 static json_t *seconds(const struct run_result *result)
 {
     json_t *list = json_object();
@@ -56,13 +64,13 @@ static json_t *seconds(const struct run_result *result)
     for (int p = 0; p < PART_COUNT; p++) {
         const double mine = p == PART_encode ? result->cpu_encode : result->parts.cpu[p];
         cpu += mine;
-        json_object_set_new(list, parts_name((enum part)p),
-                            json_pack("{s:f, s:f}", "wall", result->parts.wall[p], "cpu", mine));
+        json_t *part = json_pack("{s:f, s:f}", "wall", result->parts.wall[p], "cpu", mine);
+        add_rates(part, run_part_seconds(result, (enum part)p), result);
+        json_object_set_new(list, parts_name((enum part)p), part);
     }
-    json_object_set_new(list, "total",
-                        json_pack("{s:f, s:f}", "wall", result->wall, "cpu", cpu));
-    json_object_set_new(list, "per_simulated_time", json_real(result->per_time));
-    json_object_set_new(list, "per_step", json_real(result->per_step));
+    json_t *total = json_pack("{s:f, s:f}", "wall", result->wall, "cpu", cpu);
+    add_rates(total, result->wall, result);
+    json_object_set_new(list, "total", total);
     return list;
 }
 

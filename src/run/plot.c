@@ -24,6 +24,10 @@ static const char *const colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7"
                                       "#e69f00", "#666666"};
 enum { COLOURS = sizeof colours / sizeof *colours };
 
+/* The map 'inferno' of matplotlib (CC0) at ten places. */
+static const char inferno[] = "0 '#000004', 1 '#1b0c41', 2 '#4a0c6b', 3 '#781c6d', 4 '#a52c60', "
+                              "5 '#cf4446', 6 '#ed6925', 7 '#fb9b06', 8 '#f7d13d', 9 '#fcffa4'";
+
 bool plot_parse(const char *words, unsigned *formats, struct error *error)
 {
     *formats = 0;
@@ -67,6 +71,21 @@ static void write_range(FILE *out, const char *axis, const double range[2])
     fputs("]\n", out);
 }
 
+/* A whole grid, without its header; as text, which has no colours, the cells in the upper half of
+ * the range. */
+static void write_cells(FILE *out, const struct chart_curve *cells, const char *stem, bool text)
+{
+    double least = INFINITY, most = -INFINITY;
+    for (uint32_t k = 0; k < cells->count; k++) {
+        least = fmin(least, cells->error[k]);
+        most = fmax(most, cells->error[k]);
+    }
+    fprintf(out, "    '%s.csv' every ::1 using ", stem);
+    if (text) fprintf(out, "2:($4 > %.9g ? $3 : NaN) with points pt '#'", 0.5 * (least + most));
+    else fputs("2:3:4 with image", out);
+    fputs(" notitle", out);
+}
+
 static void write_curve(FILE *out, const struct chart *chart, uint32_t c, const char *stem)
 {
     const struct chart_curve *curve = &chart->curves[c];
@@ -87,6 +106,7 @@ static void write_curve(FILE *out, const struct chart *chart, uint32_t c, const 
     case CHART_LAW:
         fprintf(out, " with lines dt %u lc rgb 'black'", 2 + nth[1] % 4);
         break;
+    case CHART_CELLS: break;
     }
     fputs(" title ", out);
     quote(out, curve->name);
@@ -106,14 +126,32 @@ static void write_script(FILE *out, const struct chart *chart, const char *stem,
     if (chart->log_x) fputs("set logscale x\nset format x '%g'\n", out);
     if (chart->log_y) fputs("set logscale y\nset format y '%g'\n", out);
     if (chart->equal) fputs("set size ratio -1\n", out);
+    for (uint32_t c = 0; c < chart->count; c++) {
+        if (chart->curves[c].style != CHART_CELLS) continue;
+        fprintf(out, "set palette defined (%s)\nset autoscale xfix\nset autoscale yfix\n"
+                "set cblabel ", inferno);
+        quote(out, chart->curves[c].name);
+        fputs(" noenhanced\n", out);
+    }
     write_range(out, "x", chart->x_range);
     write_range(out, "y", chart->y_range);
+    for (uint32_t k = 0; k < chart->label_count; k++) {
+        const struct chart_label *label = &chart->labels[k];
+        fputs("set label ", out);
+        quote(out, label->text);
+        fprintf(out, " at %.9g,%.9g offset char 0.6,0.4 font ',8' noenhanced\n", label->x,
+                label->y);
+    }
     for (int f = 0; f < PLOT_FORMAT_COUNT; f++) {
         if (!(formats >> f & 1)) continue;
         fprintf(out, "set terminal %s\nset output '%s.%s'\nplot \\\n", formats_list[f].terminal,
                 stem, formats_list[f].ending);
         for (uint32_t c = 0; c < chart->count; c++) {
-            write_curve(out, chart, c, stem);
+            if (chart->curves[c].style == CHART_CELLS) {
+                write_cells(out, &chart->curves[c], stem, f == PLOT_BIT_text);
+            } else {
+                write_curve(out, chart, c, stem);
+            }
             fputs(c + 1 < chart->count ? ", \\\n" : "\n", out);
         }
         fputs("unset output\n", out);

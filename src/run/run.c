@@ -299,6 +299,11 @@ static bool drawn_one(void *context, uint64_t done, uint64_t count)
     return may_go_on(run);
 }
 
+double run_part_seconds(const struct run_result *result, enum part part)
+{
+    return part == PART_encode ? result->cpu_encode : result->parts.wall[part];
+}
+
 static void fill_result(struct run *run, struct run_result *result)
 {
     parts_enter(&run->parts, run->parts.now, encoder_cpu(run->writer.encoder));
@@ -310,9 +315,8 @@ static void fill_result(struct run *run, struct run_result *result)
     for (uint32_t p = 0; p < run->scene->phase_count; p++) {
         result->effects |= run->scene->phases[p]->effects;
     }
-    const double span = result->counters.time - run->time_start;
-    if (span > 0) result->per_time = run->parts.wall[PART_core] / span;
-    if (run->work_done > 0) result->per_step = run->parts.wall[PART_core] / run->work_done;
+    result->span = result->counters.time - run->time_start;
+    result->work = run->work_done;
     result->frames = run->writer.schedules[WRITER_FRAME].next;
     result->maps = run->writer.maps;
     result->log_rows = run->writer.logbook.ledger.rows;

@@ -44,10 +44,13 @@ struct run_result {
     struct parts parts;
     double   cpu_encode, wall;
     effects_t effects;          /* of all phases */
-    double   per_time, per_step;        /* wall seconds of the model alone; 0: it did nothing */
+    double   span, work;        /* simulated time and steps, events, ticks of this run */
     uint64_t digest, frames, maps, log_rows;
     double   range[2];          /* of the colours */
 };
+
+/* Wall seconds of a part; of encoders, which run beside the others, processor seconds. */
+double run_part_seconds(const struct run_result *result, enum part part);
 
 /* Error codes: EXIT_FAILED, EXIT_USAGE (directory), EXIT_STOPPED (time limit), EXIT_INTERRUPT,
  * EXIT_TERMINATED; in the last three a checkpoint is kept and the error says how to go on. */

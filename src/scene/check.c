@@ -200,6 +200,12 @@ static void check_source(struct check check, const struct source *source)
     if (source->kind == SOURCE_STREAM && !(speed > 0)) {
         ERROR("velocity", "a stream needs a 'velocity', or its first column never makes room");
     }
+    if (source->above > 0 && source->kind != SOURCE_POINT) {
+        ERROR("above", "a stream cannot rise with a heap; use kind = \"point\"");
+    }
+    if (source->above > 0 && !(scene->gravity[1] < 0)) {
+        ERROR("above", "a source rises against gravity along -y; set 'gravity', or delete 'above'");
+    }
     check_source_screens(check, source);
 }
 

@@ -20,6 +20,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 enum units { UNITS_REDUCED, UNITS_SI, UNITS_CGS };
 enum border { BORDER_WALL, BORDER_PERIODIC, BORDER_OPEN };
@@ -64,6 +65,7 @@ struct source {
     char   grains[KEY_TEXT_MAX];
     int    kind;                /* enum source_kind */
     double position[2];         /* point: where; stream: middle of the column at its release */
+    double above;               /* point: height above the grains at rest; 0: it does not rise */
     double width;               /* point: spread along x; stream: b, the height of a column */
     double velocity[2];
     double rate;                /* point: grains per time */
@@ -156,6 +158,8 @@ struct measure {
     uint32_t impact_bins;
     bool   stress;              /* what contacts carry, in all and in each cell of the maps' grid */
     struct key_texts cost;      /* by which `sandreel cost` compares: energy, ... */
+    char   reference[KEY_TEXT_MAX];     /* and with what: "ed ed.t_c=*0.1"; "": by the effects */
+    struct key_texts settings;  /* and which settings; empty: a list for every model */
 };
 
 /* `output`: what a run writes and how often; 0 = never. */
@@ -278,6 +282,9 @@ void *scene_settings(const struct scene *scene, const char *name);
 /* Writes the resolved scene, every default written out, as a scene file: parsing it gives the
  * same scene (same grains, same bytes). */
 bool scene_write(const struct scene *scene, const char *path, struct error *error);
+
+/* The same text into an open stream. */
+void scene_write_text(const struct scene *scene, FILE *out);
 
 /* The scene in force at time t (phases). */
 const struct scene *scene_at(const struct scene *scene, double t);

@@ -123,6 +123,17 @@ static bool outflow(const struct scene *scene, struct scene_reason *reason)
     return off(reason, "no border is open and there is no sink");
 }
 
+static bool rising(const struct scene *scene, struct scene_reason *reason)
+{
+    for (uint32_t k = 0; k < scene->source_count; k++) {
+        if (scene->sources[k].above > 0) {
+            return on(scene, reason, "sources", "source %u stays %g above what is at rest", k,
+                      scene->sources[k].above);
+        }
+    }
+    return off(reason, "no source has 'above'");
+}
+
 static bool moving(const struct scene *scene, struct scene_reason *reason)
 {
     for (uint32_t k = 0; k < scene->wall_count; k++) {
@@ -195,6 +206,7 @@ static bool derive(const struct scene *scene, uint32_t bit, struct scene_reason 
     case EFFECT_BIT_GATES:        return gates(scene, reason);
     case EFFECT_BIT_OBSTACLE:     return counted(scene, reason, "obstacles", scene->obstacle_count);
     case EFFECT_BIT_INFLOW:       return counted(scene, reason, "sources", scene->source_count);
+    case EFFECT_BIT_RISING:       return rising(scene, reason);
     case EFFECT_BIT_OUTFLOW:      return outflow(scene, reason);
     case EFFECT_BIT_SCREEN:       return counted(scene, reason, "screens", scene->screen_count);
     case EFFECT_BIT_COLLISION_RATE: return collision_rate(scene, reason);

@@ -100,6 +100,8 @@ static const struct key source_keys[] = {
     CHOICE(source, kind, "point", "point|stream",
            "grains that fall one by one, or columns of grains"),
     PLACE(source, position, NULL, "where; of a stream: the middle of a new column"),
+    REAL(source, above, "0", 0, FAR, "length",
+         "point: it rises with a heap, so high above its highest grain at rest; 0: it stays"),
     REAL(source, width, "0", 0, FAR, "length", "spread along x; of a stream: the column's height"),
     VECTOR(source, velocity, "(0, 0)", -FAR, FAR, "speed", "with which they enter"),
     REAL(source, rate, "0", 0, FAR, "1/time", "point: grains per time"),
@@ -204,8 +206,12 @@ static const struct key measure_keys[] = {
     COUNT(measure, impact_bins, "50", 10000, "of the impact parameter, over 0 to 1"),
     BOOL(measure, stress, "false",
          "the stress that collisions carry and the kinetic one: in log.csv, and as maps"),
-    TEXTS(measure, cost, "what `sandreel cost` compares: energy, collisions, discharge, force, "
-          "density, height; absent: what suits the scene"),
+    TEXTS(measure, cost, "what `sandreel cost` compares: energy, collisions, discharge, rate, "
+          "height, slope, force, structure, density, path; absent: what suits the scene"),
+    TEXT(measure, reference, "", NULL, "with what `sandreel cost` compares: a model and keys, "
+         "=*2 being a factor on what the model chooses; absent: md or ed, by the effects"),
+    TEXTS(measure, settings, "what `sandreel cost` tries, each a model and keys; absent: a list "
+          "for every model"),
 };
 
 static const struct key output_keys[] = {

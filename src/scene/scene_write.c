@@ -237,19 +237,24 @@ static void write_list(FILE *out, const struct scene_section *section, const str
     fputs(");\n", out);
 }
 
+void scene_write_text(const struct scene *scene, FILE *out)
+{
+    fprintf(out, "# %s, resolved: every key with its value\n", scene->name);
+    write_keys(out, &scene_key_top, scene, "");
+    for (uint32_t s = 0; s < SCENE_SECTIONS; s++) {
+        const struct scene_section *section = &scene_key_sections[s];
+        if (section->list) write_list(out, section, scene);
+        else write_group(out, section->group, (const char *)scene + section->offset);
+    }
+    for (uint32_t g = 0; g < scene->settings_count; g++) {
+        write_group(out, scene->settings_groups[g], scene->settings[g]);
+    }
+}
+
 bool scene_write(const struct scene *scene, const char *path, struct error *error)
 {
     struct file file;
     if (!file_begin(&file, path, error)) return false;
-    fprintf(file.stream, "# %s, resolved: every key with its value\n", scene->name);
-    write_keys(file.stream, &scene_key_top, scene, "");
-    for (uint32_t s = 0; s < SCENE_SECTIONS; s++) {
-        const struct scene_section *section = &scene_key_sections[s];
-        if (section->list) write_list(file.stream, section, scene);
-        else write_group(file.stream, section->group, (const char *)scene + section->offset);
-    }
-    for (uint32_t g = 0; g < scene->settings_count; g++) {
-        write_group(file.stream, scene->settings_groups[g], scene->settings[g]);
-    }
+    scene_write_text(scene, file.stream);
     return file_commit(&file, error);
 }

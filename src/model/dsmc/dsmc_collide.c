@@ -6,7 +6,9 @@
  * with sigma = 2d), rounded by chance so that the mean is exact, and each collides with probability
  * g / v, g its relative speed: 000 (2) and 001 (16) print the opposite.  For v any bound on g will
  * do.  Here it is the diagonal of the smallest box around the velocities of the cell's own grains:
- * exact for a pair, and found in one pass.
+ * exact for a pair, and found in one pass.  Collisions of this same step may make a pair faster
+ * than that.  It collides for certain and then, with probability g / v - 1, once more: so every
+ * pair has on average the g / v collisions that are due, whether or not v is a bound.
  *
  * A block of cells goes in three passes: the bounds, then the numbers of candidates, then the
  * candidates themselves, some hundred at a time, of which everything that does not depend on
@@ -31,6 +33,8 @@ enum {
     PER_GRAIN_MAX = 64          /* candidates a grain and step; in a collapse there is no limit */
 };
 
+static const uint64_t repay_key = 0x7265706179; /* "repay": apart from other streams */
+
 static float printed_speed;     /* for tests: as printed, with this v; 0: as it should be */
 
 void dsmc_collide_as_printed(float speed) { printed_speed = speed; }
@@ -44,15 +48,12 @@ struct block {
     float    width[DSMC_BLOCK], height[DSMC_BLOCK];     /* of the box around a cell's velocities */
     float    bound2[DSMC_BLOCK];        /* square of the bound on relative speeds */
     uint32_t pairs[DSMC_BLOCK];         /* candidates */
-    uint64_t collisions, rejected, tangential;
+    uint64_t candidates, collisions, rejected, tangential;
+    uint64_t owing, repaid;     /* chances of pairs faster than the bound, and what came of them */
     double  *impacts;
 };
 
 /* ---- how many candidates -------------------------------------------------------------------- */
-
-/* After a collision two grains may differ by more than any two before.  The bound of three or more
- * is taken 10 % higher, so that hardly any pair exceeds it; one that does collides for certain. */
-static const float reserve2 = 1.2f;
 
 FORCE_INLINE void widen(const struct dsmc_grain *pair, vector8 *low, vector8 *high)
 {
@@ -102,7 +103,7 @@ FORCE_INLINE void find_pairs(struct block *block)
     for (uint32_t k = 0; k < count; k++) {
         const float n = (float)(int32_t)(first[k + 1] - first[k]);
         const float own = width[k] * width[k] + height[k] * height[k];
-        const float bound = printed2 > 0 ? printed2 : n > 2 ? reserve2 * own : own;
+        const float bound = printed2 > 0 ? printed2 : own;
         const float mean = rate * factor[k] * n * (n - 1) * sqrtf(bound);
         const float most = (float)PER_GRAIN_MAX * n;
         const float u = (float)(int32_t)(chance[k] >> 8) * 0x1p-24f;
@@ -120,6 +121,7 @@ struct batch {
     uint32_t count;
     uint32_t k[BATCH + EIGHT];          /* which cell of the block */
     uint32_t i[BATCH], j[BATCH];        /* which grains */
+    float bound2[BATCH];        /* of their cell */
     float least[BATCH];         /* they collide if the square of their relative speed is more */
     float b[BATCH];             /* impact parameter, a share of the diameter */
     float along[BATCH], across[BATCH];  /* share of the relative velocity, and of it turned left */
@@ -152,14 +154,13 @@ FORCE_INLINE void work_out(struct block *block, struct batch *batch)
 {
     const uint32_t *first = &block->dsmc->first[block->cell], count = batch->count;
     uint32_t words[3 * BATCH], start[BATCH], n[BATCH];
-    float bound2[BATCH];
     const uint32_t made = (count + DSMC_LANES - 1) / DSMC_LANES * DSMC_LANES;
     dsmc_words_fill(&block->words, words, 3 * made);
     for (uint32_t c = 0; c < count; c++) {
         const uint32_t k = batch->k[c];
         start[c] = first[k];
         n[c] = first[k + 1] - first[k];
-        bound2[c] = block->bound2[k];
+        batch->bound2[c] = block->bound2[k];
     }
     for (uint32_t c = 0; c < count; c++) {
         const uint32_t word = words[c];
@@ -172,7 +173,7 @@ FORCE_INLINE void work_out(struct block *block, struct batch *batch)
         const float u = (float)(int32_t)(words[made + c] >> 8) * 0x1p-24f;
         const float b = (float)(int32_t)(words[2 * made + c] >> 8) * 0x1p-23f - 1;
         const float c2 = 1 - b * b;
-        batch->least[c] = u * u * bound2[c];
+        batch->least[c] = u * u * batch->bound2[c];
         batch->b[c] = b;
         batch->along[c] = c2;
         batch->across[c] = b * sqrtf(c2);
@@ -257,11 +258,32 @@ FORCE_INLINE void collide_pair(struct dsmc *dsmc, uint32_t i, uint32_t j, float 
     if (flags & NOTED) note(dsmc, i, j);
 }
 
+/* A pair that has just collided and was faster than the bound, g2 > bound2: it is owed g / v - 1 of
+ * a collision. */
+FORCE_INLINE void repay(struct block *block, uint32_t i, uint32_t j, float g2, float bound2,
+                        unsigned flags)
+{
+    struct dsmc *dsmc = block->dsmc;
+    for (float owed = fminf(sqrtf(g2 / bound2) - 1, PER_GRAIN_MAX); owed > 0; owed -= 1) {
+        const uint64_t word = rng_keyed(dsmc->seed, repay_key, dsmc->steps,
+                                        (uint64_t)block->number << 32 | block->owing++);
+        if (dsmc_words_unit((uint32_t)word) >= owed) break;
+        const float b = (float)(int32_t)(word >> 40) * 0x1p-23f - 1, along = 1 - b * b;
+        const float across = b * sqrtf(along);
+        const float gx = dsmc->grains[i].vx - dsmc->grains[j].vx;
+        const float gy = dsmc->grains[i].vy - dsmc->grains[j].vy;
+        collide_pair(dsmc, i, j, gx * along - gy * across, gy * along + gx * across, gx, gy, flags);
+        if (flags & NOTED && block->impacts) dsmc_note_impact(dsmc, block->impacts, b);
+        block->repaid++;
+    }
+}
+
 /* ---- a block of cells ----------------------------------------------------------------------- */
 
 /* Kicks only: every candidate is worked out alike, and one that does not collide gets nothing. */
-FORCE_INLINE uint32_t kick_all(struct dsmc *dsmc, const struct batch *batch)
+FORCE_INLINE uint32_t kick_all(struct block *block, const struct batch *batch)
 {
+    struct dsmc *dsmc = block->dsmc;
     vector4 *grains = (vector4 *)(void *)dsmc->grains;
     const float f = dsmc->half_impulse;
     const vector4 along = {0, 0, f, f}, across = {0, 0, -f, f};
@@ -278,13 +300,15 @@ FORCE_INLINE uint32_t kick_all(struct dsmc *dsmc, const struct batch *batch)
         *p = a - kick;
         *q = b + kick;
         collisions += collides;
+        if (g2 > batch->bound2[c]) repay(block, batch->i[c], batch->j[c], g2, batch->bound2[c], 0);
     }
     return collisions;
 }
 
-FORCE_INLINE uint32_t collide_all(struct dsmc *dsmc, const struct batch *batch, double *impacts,
-                                  unsigned flags)
+FORCE_INLINE uint32_t collide_all(struct block *block, const struct batch *batch, unsigned flags)
 {
+    struct dsmc *dsmc = block->dsmc;
+    double *impacts = block->impacts;
     const bool printed = printed_speed > 0;
     uint32_t collisions = 0;
     for (uint32_t c = 0; c < batch->count; c++) {
@@ -296,6 +320,7 @@ FORCE_INLINE uint32_t collide_all(struct dsmc *dsmc, const struct batch *batch, 
         collisions++;
         if (flags & NOTED && impacts) dsmc_note_impact(dsmc, impacts, batch->b[c]);
         collide_pair(dsmc, i, j, gx * s - gy * t, gy * s + gx * t, gx, gy, flags);
+        if (!printed && g2 > batch->bound2[c]) repay(block, i, j, g2, batch->bound2[c], flags);
     }
     return collisions;
 }
@@ -311,11 +336,11 @@ FORCE_INLINE void collide_block(struct block *block, unsigned flags)
         k = take_cells(block, k, &batch);
         work_out(block, &batch);
         const bool simple = flags == 0 && !(printed_speed > 0);
-        const uint32_t collisions = simple ? kick_all(dsmc, &batch)
-                                           : collide_all(dsmc, &batch, block->impacts, flags);
-        block->collisions += collisions;
-        block->rejected += batch.count - collisions;
+        block->collisions += simple ? kick_all(block, &batch) : collide_all(block, &batch, flags);
+        block->candidates += batch.count;
     }
+    block->rejected = block->candidates - block->collisions;
+    block->collisions += block->repaid;
     if (flags & ROUGH) block->tangential = block->collisions;
 }
 
@@ -369,7 +394,8 @@ void dsmc_collide(struct dsmc *dsmc, uint32_t number, struct dsmc_sums *sums)
     if (dsmc->settings.method == DSMC_PLAIN) dsmc_crowd_global(&block.crowd);
     else dsmc_crowd_local(&block.crowd);
     block.words = dsmc_words_begin(dsmc->seed, dsmc->steps, number);
-    block.collisions = block.rejected = block.tangential = 0;
+    block.number = number;
+    block.candidates = block.collisions = block.tangential = block.owing = block.repaid = 0;
     loops[flags](&block);
     sums->collisions += block.collisions;
     sums->rejected += block.rejected;

@@ -96,6 +96,20 @@ static bool has_room(const struct dsmc *dsmc, const struct source_grain *grain)
     return dsmc->load[cell] + dsmc->settings.weight <= dsmc->full;
 }
 
+/* A grain of a rising source begins above the highest grain at rest, within the box.  (000, 3.4 has
+ * the highest of all; but then grains that fall slower than others come in lift the source.) */
+static void lift(const struct dsmc *dsmc, uint32_t s, struct source_grain *grain)
+{
+    const struct scene *scene = dsmc->scene;
+    const double above = scene->sources[s].above, most = scene->box[3] - 2 * dsmc->radius;
+    if (above == 0) return;
+    float top = -INFINITY;
+    for (uint32_t i = 0; i < dsmc->count; i++) {
+        if (dsmc->tags[i] & DSMC_RESTS) top = fmaxf(top, dsmc->grains[i].y);
+    }
+    grain->y = fmin(fmax(grain->y, scene->box[1] + (double)top + above), most);
+}
+
 static bool let_batch_in(struct dsmc *dsmc, uint32_t s, double t)
 {
     const struct scene *scene = dsmc->scene;
@@ -103,6 +117,7 @@ static bool let_batch_in(struct dsmc *dsmc, uint32_t s, double t)
     const uint32_t count = source_batch(scene, s, cursor->next, dsmc->batch, dsmc->batch_max);
     const uint32_t weight = dsmc->settings.weight;
     if (dsmc->count_max - dsmc->count < (uint64_t)count * weight) return false;
+    if (count > 0) lift(dsmc, s, &dsmc->batch[0]);
     const bool waits = scene->sources[s].kind == SOURCE_POINT && dsmc->full > 0;
     if (waits && count > 0 && !has_room(dsmc, &dsmc->batch[0])) return false;
     for (uint32_t k = 0; k < count; k++) {

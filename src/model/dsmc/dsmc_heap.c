@@ -367,6 +367,15 @@ static struct sweep sweep_of(struct dsmc *dsmc)
         .nx = dsmc->ax.cells, .ny = dsmc->ay.cells};
 }
 
+void dsmc_heap_load(struct dsmc *dsmc, uint32_t t, uint32_t team)
+{
+    const uint32_t from = (uint32_t)((uint64_t)dsmc->cells * t / team);
+    const uint32_t to = (uint32_t)((uint64_t)dsmc->cells * (t + 1) / team);
+    for (uint32_t c = from; c < to; c++) {
+        dsmc->load[c] = (uint16_t)(dsmc->first[c + 1] - dsmc->first[c]);
+    }
+}
+
 void dsmc_heap_sweep(struct dsmc *dsmc, struct dsmc_sums *sums)
 {
     struct sweep sweep = sweep_of(dsmc);
@@ -376,12 +385,11 @@ void dsmc_heap_sweep(struct dsmc *dsmc, struct dsmc_sums *sums)
     const bool freely = !dsmc->walls.first && !(dsmc->effects & EFFECT_SHEAR);
     sweep.key = rng.state;
     sweep.impacts = sums->impacts;
-#pragma omp for
-    for (uint32_t c = 0; c < dsmc->cells; c++) {
-        dsmc->load[c] = (uint16_t)(dsmc->first[c + 1] - dsmc->first[c]);
-    }
     for (uint32_t half = 0; half < 2; half++) {
-#pragma omp for schedule(dynamic, 1)
+        if (half == 1) {
+#pragma omp barrier
+        }
+#pragma omp for schedule(dynamic, 1) nowait
         for (uint32_t k = (half + turn) & 1; k < count; k += 2) {
             const struct stripe stripe = stripe_at(dsmc, shift, count, k);
             (freely ? sweep_freely : sweep_any)(&sweep, stripe);

@@ -271,6 +271,7 @@ static uint32_t share_block(const struct dsmc *dsmc, uint32_t t, uint32_t team)
     return low;
 }
 
+/* Other threads may still be delivering when it returns. */
 static void sort_share(struct dsmc *dsmc, uint32_t t, uint32_t team, uint32_t *starts,
                        uint32_t first, uint32_t last)
 {
@@ -279,7 +280,6 @@ static void sort_share(struct dsmc *dsmc, uint32_t t, uint32_t team, uint32_t *s
     scatter(dsmc, places, first, last);
 #pragma omp barrier
     deliver(dsmc, first, last);
-#pragma omp barrier
 }
 
 static void finish_sort(struct dsmc *dsmc)
@@ -348,7 +348,8 @@ static void do_share(struct dsmc *dsmc, const struct dsmc_flight *flight, uint32
     uint32_t last = dsmc->first[dsmc_collide_cell(dsmc, to)];
     struct dsmc_sums sums = {
         .impacts = dsmc->impacts ? dsmc->impacts + (size_t)t * dsmc->tally.impact.bins : NULL};
-    memset(places, 0, dsmc->cells * sizeof *places);
+    if (dsmc->full) dsmc_heap_load(dsmc, t, team);
+    else memset(places, 0, dsmc->cells * sizeof *places);
     do_blocks(dsmc, flight, from, to, places, &sums);
     dsmc->sums[t] = sums;
 #pragma omp barrier

@@ -106,6 +106,13 @@ static void judge_heap(struct scene *scene, const struct dsmc_settings *settings
             "lets grains rest on cells below them along y only; turn the scene", g[0], g[1]);
         return;
     }
+    for (uint32_t s = 0; s < scene->source_count; s++) {
+        if (scene->sources[s].above == 0) continue;
+        char place[64];
+        snprintf(place, sizeof place, "sources.[%u].above", s);
+        findings_tell(findings, scene, FINDING_ERROR, place, "grains come to rest by hsmc only, so "
+            "no heap lifts this source; set dsmc.method = \"hsmc\", or delete 'above'");
+    }
     if (!can_pile_up(scene) || !(scene->effects & EFFECT_DISSIPATION)) return;
     findings_tell(findings, scene, FINDING_WARNING, "dsmc.method", "grains that lose energy fall "
         "onto walls here, and nothing keeps points apart: once they are slow the density at the "

@@ -15,7 +15,7 @@
 
 enum {
     LOOKS_MAX = 200,            /* at the walls in one step of one grain; the way left is lost */
-    ROUNDS_MAX = 3,             /* over the walls of a corner */
+    ROUNDS_MAX = 6,             /* of one grain in a corner */
     IMAGES = 9
 };
 
@@ -253,36 +253,45 @@ static void bounce(struct flyer *flyer, const struct wall *wall, const struct wa
     flyer->carried |= nx * g[0] + ny * g[1] < -carries_cosine * hypot(g[0], g[1]);
 }
 
-/* Out of every wall that it overlaps, bouncing if `bounces`.  Returns how far it may go before it
- * can touch one. */
-static double leave_walls(struct flyer *flyer, bool bounces)
+struct touch { uint32_t entry; struct wall_nearest nearest; double overlap; };
+
+/* The wall that it overlaps most; false if none.  Lessens `room` to the way to the nearest one. */
+static bool deepest(const struct flyer *flyer, uint32_t cell, struct touch *touch, double *room)
 {
     const struct dsmc *dsmc = flyer->dsmc;
     const struct dsmc_walls *walls = &dsmc->walls;
+    touch->overlap = 0;
+    for (uint32_t k = walls->first[cell]; k < walls->first[cell + 1]; k++) {
+        const uint32_t entry = walls->near[k];
+        if (!walls->here[entry / IMAGES]) continue;
+        const struct wall_nearest nearest = nearest_of(dsmc, entry, flyer->x, flyer->y);
+        const double overlap = dsmc->radius - nearest.distance;
+        *room = fmin(*room, fmax(0, -overlap));
+        if (overlap > touch->overlap) *touch = (struct touch){entry, nearest, overlap};
+    }
+    return touch->overlap > 0;
+}
+
+/* Out of every wall that it overlaps, bouncing if `bounces`: where two pieces of a flat wall meet
+ * the nearer one is met, not the end of the other.  Returns how far it may go before it can touch
+ * one. */
+static double leave_walls(struct flyer *flyer, bool bounces)
+{
+    const struct dsmc *dsmc = flyer->dsmc;
     const uint32_t cell = dsmc_walls_cell(dsmc, (float)flyer->x, (float)flyer->y);
-    double room = (double)walls->stride;
-    for (int round = 0; round < ROUNDS_MAX; round++) {
-        bool touched = false;
-        for (uint32_t k = walls->first[cell]; k < walls->first[cell + 1]; k++) {
-            const uint32_t w = walls->near[k] / IMAGES;
-            if (!walls->here[w]) continue;
-            const uint32_t entry = walls->near[k];
-            const struct wall_nearest nearest = nearest_of(dsmc, entry, flyer->x, flyer->y);
-            const double overlap = dsmc->radius - nearest.distance;
-            room = fmin(room, fmax(0, -overlap));
-            if (!(overlap > 0)) continue;
-            const struct wall *wall = &walls->now[w];
-            const double restitution = 0.5 * (dsmc->restitution
-                + dsmc->scene->species[wall->species].restitution);
-            const double vn = flyer->vx * nearest.nx + flyer->vy * nearest.ny;
-            double back = overlap;
-            if (bounces && vn < 0) back += fmin(restitution * overlap, 0.25 * dsmc->radius);
-            if (bounces) bounce(flyer, wall, &nearest, restitution);
-            flyer->x += back * nearest.nx;
-            flyer->y += back * nearest.ny;
-            touched = true;
-        }
-        if (!touched) break;
+    double room = (double)dsmc->walls.stride;
+    struct touch touch;
+    for (int round = 0; round < ROUNDS_MAX && deepest(flyer, cell, &touch, &room); round++) {
+        const struct wall_nearest *nearest = &touch.nearest;
+        const struct wall *wall = &dsmc->walls.now[touch.entry / IMAGES];
+        const double restitution = 0.5 * (dsmc->restitution
+            + dsmc->scene->species[wall->species].restitution);
+        const double vn = flyer->vx * nearest->nx + flyer->vy * nearest->ny;
+        double back = touch.overlap;
+        if (bounces && vn < 0) back += fmin(restitution * touch.overlap, 0.25 * dsmc->radius);
+        if (bounces) bounce(flyer, wall, nearest, restitution);
+        flyer->x += back * nearest->nx;
+        flyer->y += back * nearest->ny;
     }
     return room;
 }

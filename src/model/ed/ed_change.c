@@ -89,8 +89,8 @@ static void bounce(struct ed *ed, uint32_t i, uint32_t w, const struct ed_touch 
                             * ed_walls_surface(ed, w, touch);
         const double mobility = (1 + 1 / q) / m;
         dvt = ed_law_tangential(pair, slip, mobility, m * dvn) / m;
-        if (elastic && law->keeps_energy) {
-            dvn = ed_law_return(away, slip, mobility, m * dvt, m) - touch->vn;
+        if (elastic && away < law->return_max) {
+            dvn = ed_law_return(law, away, slip, mobility, m * dvt, m) - touch->vn;
         }
         const double dspin = -dvt / (q * radius);
         ed->spin[i] += dspin;

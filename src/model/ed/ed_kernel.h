@@ -337,9 +337,9 @@ FORCE_INLINE void collide(struct ed *ed, uint32_t i, int with)
         const double slip = -(a.du * tx + a.dv * ty) - ri * ed->spin[i] - rj * ed->spin[j];
         const double mobility = (1 + 1 / qi) / mi + (1 + 1 / qj) / mj;
         const double impulse = ed_law_tangential(pair, slip, mobility, normal * mi);
-        if (elastic && ed->law.keeps_energy) {
-            const double back = ed_law_return(closing, slip, mobility, impulse, share * mi);
-            normal = (closing + back) * share;
+        if (elastic && closing < ed->law.return_max) {
+            normal = share * (closing + ed_law_return(&ed->law, closing, slip, mobility, impulse,
+                                                      share * mi));
         }
         sx = impulse / mi * tx;
         sy = impulse / mi * ty;

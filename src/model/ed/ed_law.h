@@ -29,7 +29,8 @@ struct ed_law {
     double t_c;
     double exponent, per_speed; /* viscoelastic: 1 - r ~ (v / reference)^exponent; 0: constant */
     bool   spins;               /* someone has friction */
-    bool   keeps_energy;        /* contacts under the TC rule keep it, friction or not */
+    double return_max;          /* contacts under the TC rule give back what friction took until
+                                 * they separate with this speed; 0: never */
 };
 
 bool ed_law_create(struct ed_law *law, const struct scene *scene,
@@ -48,12 +49,13 @@ static inline double ed_law_restitution(const struct ed_law *law, double r, doub
 }
 
 /* Speed of separation with which a contact of reduced mass m12 keeps the energy that the tangential
- * impulse takes from its slip: w = J s + J^2 / 2 m_t is added to m12 v^2 / 2. */
-static inline double ed_law_return(double closing, double slip, double mobility, double impulse,
-                                   double m12)
+ * impulse takes from its slip, as far as `return_max` allows: w = J s + J^2 / 2 m_t is added to
+ * m12 v^2 / 2. */
+static inline double ed_law_return(const struct ed_law *law, double closing, double slip,
+                                   double mobility, double impulse, double m12)
 {
     const double gain = impulse * (slip + 0.5 * mobility * impulse);            /* <= 0 */
-    return sqrt(fmax(closing * closing - 2 * gain / m12, 0));
+    return fmin(sqrt(fmax(closing * closing - 2 * gain / m12, 0)), law->return_max);
 }
 
 /* Tangential impulse on body 1 along t, for a slip of the contact points along t and the normal

@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 
 enum ed_force { ED_LINEAR, ED_HERTZ };
-enum ed_elastic { ED_ELASTIC_NORMAL, ED_ELASTIC_WHOLE };
+enum ed_elastic { ED_ELASTIC_NORMAL, ED_ELASTIC_REST };
 enum ed_vectors { ED_VECTORS_AUTO, ED_VECTORS_NONE };
 
 struct ed_settings {

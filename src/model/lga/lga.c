@@ -11,6 +11,7 @@
 
 #include "model/model.h"
 #include "model/speed.h"
+#include "model/stepping.h"
 
 #include <assert.h>
 #include <math.h>
@@ -163,7 +164,8 @@ static uint64_t lga_memory(const struct scene *scene)
     const struct lga_settings s = completed(scene);
     const int planes = s.method == LGA_GMLG ? LGA_GMLG_PLANES : LGA_PLANES;
     /* Walls, sinks, a bit for each node in a search for room, and the surplus. */
-    const double bytes = (planes + 4 + (s.heap ? 2 : 0)) / 8.0;
+    const int counted = scene->effects & EFFECT_COLLISION_RATE ? 2 * LGA_RATE_DIGITS : 0;
+    const double bytes = (planes + 4 + (s.heap ? 2 : 0) + counted) / 8.0;
     return (uint64_t)(fmin(sites_about(scene, s.spacing), 1e15) * bytes);
 }
 
@@ -235,6 +237,10 @@ static bool set_up(struct lga *lga, struct error *error)
     lga->sites = lga->lattice.rows * lga->lattice.columns;
     lga->tick = s.tick;
     lga->seed = scene->seed;
+    if (scene->effects & EFFECT_COLLISION_RATE) {
+        lga->rate.window = (uint64_t)fmin(fmax(rint(stepping_window(scene, s.tick) / s.tick), 1),
+                                          0x1p53);
+    }
     if (!lga_step_allocate(lga) || !arena_array(&lga->arena, &lga->entered, scene->source_count)) {
         return error_set(error, "%s: not enough memory for a lattice of %u nodes; give "
             "lga.spacing a larger value than %g", scene->path, lga->sites, s.spacing);
@@ -372,6 +378,7 @@ static void lga_archive(void *state, struct archive *archive)
         snprintf(name, sizeof name, "lga.source.%u", k);
         archive_value(archive, name, &lga->entered[k]);
     }
+    lga_rate_archive(lga, archive);
     if (archive->mode != ARCHIVE_LOAD || archive->failed) return;
     const char *wrong = check_loaded(lga, tick);
     if (wrong) {
@@ -394,7 +401,8 @@ const struct model model_lga = {
     /* Friction is the lattice's own: its slopes stand without a coefficient, and `s` says how
      * firmly a grain with one-sided support holds. */
     .effects  = EFFECT_GRAVITY | EFFECT_DISSIPATION | EFFECT_FRICTION | EFFECT_POLYDISPERSE
-              | EFFECT_PERIODIC | EFFECT_WALLS | EFFECT_GATES | EFFECT_INFLOW | EFFECT_OUTFLOW,
+              | EFFECT_PERIODIC | EFFECT_WALLS | EFFECT_GATES | EFFECT_INFLOW | EFFECT_OUTFLOW
+              | EFFECT_COLLISION_RATE,
     .settings = &group,
     .resolve  = lga_resolve,
     .memory   = lga_memory,

@@ -25,6 +25,7 @@
 #ifndef LGA_H
 #define LGA_H
 
+#include "base/archive.h"
 #include "base/arena.h"
 #include "base/error.h"
 #include "scene/scene.h"
@@ -130,6 +131,14 @@ struct lga_table {
     struct lga_case sand[2][LGA_STATES][2];                     /* fhp2 and sandpile */
 };
 
+/* Collisions of each node, in this window of ticks and in the last whole one; digits are planes of
+ * bits, [row][digit][word], lowest first. */
+enum { LGA_RATE_DIGITS = 8 };
+struct lga_rate {
+    uint64_t window, from;      /* ticks, 0: nobody asks; the tick in which this window began */
+    uint64_t *now, *last;
+};
+
 struct lga {
     struct arena arena;
     const struct scene *scene;
@@ -155,6 +164,8 @@ struct lga {
     uint32_t *queue;            /* search for room: nodes in the order in which they are tried */
     uint32_t queue_length;
     uint64_t *seen;             /* a bit for each node: it is in the queue */
+
+    struct lga_rate rate;
 
     uint64_t seed;
     uint64_t ticks;
@@ -190,6 +201,15 @@ uint32_t lga_node_home(const struct lga *lga, double t, double x, double y);
 /* lga_walk.c: `surplus` grains, not on the lattice now, go from a node to others that have no rest
  * grain; at last resort they take a free slot of the node.  `heap`: they become part of it. */
 void lga_walk(struct lga *lga, uint32_t site, uint32_t surplus, bool heap);
+
+/* lga_rate.c: collisions counted, for EFFECT_COLLISION_RATE.  Allocation wants the window set; a
+ * row's digits are NULL if nobody asks.  The rate of a node is per time, over the last window. */
+bool lga_rate_allocate(struct lga *lga);
+uint64_t *lga_rate_row(const struct lga *lga, uint32_t row);
+void lga_rate_note(struct lga *lga, uint32_t site);     /* one collision more */
+void lga_rate_end_tick(struct lga *lga);
+double lga_rate_of(const struct lga *lga, uint32_t site);
+void lga_rate_archive(struct lga *lga, struct archive *archive);
 
 /* lga_dice.c */
 struct lga_die lga_dice_die(double probability);
@@ -251,6 +271,9 @@ unsigned lga_step_mirrored(unsigned blocked, unsigned stuck, unsigned moving);
 /* lga_plain.c: the random bits of the plain form. */
 bool lga_plain_allocate(struct lga *lga);
 void lga_plain_roll(struct lga *lga);
+
+/* Counts the collisions of this tick, of which `admitted` tells before anyone is let in. */
+void lga_plain_note(struct lga *lga);
 bool lga_plain_die(const struct lga *lga, enum lga_die_kind kind, uint32_t site);
 
 /* 0, 1 or 2, alike; one of a set of directions, and of a node's movers, all with equal chance. */

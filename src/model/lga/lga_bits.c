@@ -177,7 +177,7 @@ static uint64_t collide(const struct lga *lga, uint32_t y, uint64_t *out, unsign
     const struct lga_row_collide row = {
         .words = bits->words, .stride = bits->stride, .effects = effects,
         .key = lga_dice_key((struct lga_dice_source){lga->seed, lga->ticks, y, 0}),
-        .dice = &lga->dice, .in = plane(bits, y, 0),
+        .dice = &lga->dice, .hits = lga_rate_row(lga, y), .in = plane(bits, y, 0),
         .out = out, .wall = wall_row(bits, y), .wall_left = below + column_step[y & 1][4],
         .wall_right = below + column_step[y & 1][5]
     };
@@ -302,7 +302,6 @@ void lga_bits_step(struct lga *lga)
     uint64_t collisions = 0, left = 0;
     if (lga->rule.method == LGA_GMLG) {
         lga_bits_gmlg_step(lga, kernels[lga->simd]);
-        lga->ticks++;
         return;
     }
     if (lga->rule.method == LGA_SANDPILE) {
@@ -324,7 +323,6 @@ void lga_bits_step(struct lga *lga)
     if (bits->heap) lga_bits_sand_settle(lga, kernels[lga->simd]);
     lga->collisions += collisions;
     lga->grains_out += left;
-    lga->ticks++;
 }
 
 /* --- nodes one by one --- */

@@ -52,7 +52,7 @@ struct lga_row_collide {
     uint64_t key;               /* of the row's random words */
     const struct lga_dice *dice;
     const uint64_t *in;
-    uint64_t *out;
+    uint64_t *out, *hits;       /* the row's digits of collisions counted; NULL: not asked for */
     const uint64_t *wall, *wall_left, *wall_right;      /* here, and where a grain would fall */
 };
 
@@ -76,7 +76,7 @@ struct lga_row_stop {
     const uint64_t *wall;
     uint64_t key;
     const struct lga_dice *dice;
-    uint64_t *planes, *low, *high;
+    uint64_t *planes, *low, *high, *hits;
     uint8_t *spills;
 };
 
@@ -115,7 +115,7 @@ struct lga_row_gmlg {
     const struct lga_dice *dice;
     const uint64_t *in, *wall;
     const uint64_t *full[LGA_DIRECTIONS];       /* of the neighbours that are not above */
-    uint64_t *out;
+    uint64_t *out, *hits;
 };
 
 struct lga_row_admit {

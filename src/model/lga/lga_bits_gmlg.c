@@ -95,15 +95,18 @@ static void survey(const struct band *band, uint32_t row, uint64_t *out)
     lga_bits_join(lga, out + PLANE_FULL * bits->stride);
 }
 
-/* `near` are the places of the row below, of the row itself and of the row above. */
-static uint64_t collide(const struct band *band, uint32_t row, uint64_t *const near[3])
+/* `near` are the places of the row below, of the row itself and of the row above.  Its collisions
+ * count, unless this is only a `copy`. */
+static uint64_t collide(const struct band *band, uint32_t row, bool copy,
+                        uint64_t *const near[3])
 {
     static const int above[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
     const struct lga *lga = band->lga;
     const struct lga_bits *bits = lga->bits;
     struct lga_row_gmlg pass = {
         .words = bits->words, .stride = bits->stride, .held = lga->trapped, .dice = &lga->dice,
-        .in = lga_bits_row(lga, row), .wall = lga_bits_wall(lga, row), .out = near[1]
+        .in = lga_bits_row(lga, row), .wall = lga_bits_wall(lga, row), .out = near[1],
+        .hits = copy ? NULL : lga_rate_row(lga, row)
     };
     const bool gravity = lga->rule.gravity, vertical = lga->rule.vertical;
     for (int stage = 0; stage < LGA_STAGES; stage++) {
@@ -184,7 +187,7 @@ static void prepare_ends(struct band *band)
         }
         for (int i = 0; i < HALO; i++) {
             uint64_t *const near[3] = {place[i], place[i + 1], place[i + 2]};
-            collide(band, row_of(band, starts[end] + i), near);
+            collide(band, row_of(band, starts[end] + i), true, near);
         }
     }
 }
@@ -200,7 +203,7 @@ static void pass_band(struct band *band)
                 }
                 uint64_t *const near[3] = {slot(band, collided - 1), slot(band, collided),
                                            slot(band, collided + 1)};
-                band->collisions += collide(band, row_of(band, collided), near);
+                band->collisions += collide(band, row_of(band, collided), false, near);
             }
             const uint64_t refused = admit(band, let_in);
             if (let_in >= 0 && let_in < band->rows) band->refused += refused;

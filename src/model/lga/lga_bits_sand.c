@@ -51,7 +51,8 @@ uint64_t lga_bits_sand_stop(struct lga *lga, const struct lga_kernel *kernel)
     for (uint32_t y = 0; y < rows; y++) {
         uint64_t *low = bits->surplus + (size_t)y * bits->digits * bits->words;
         const struct lga_row_stop row = {
-            .words = bits->words, .dice = &lga->dice, .planes = lga_bits_row(lga, y), .low = low,
+            .words = bits->words, .dice = &lga->dice, .hits = lga_rate_row(lga, y),
+            .planes = lga_bits_row(lga, y), .low = low,
             .high = low + bits->words, .spills = bits->spills + y,
             .held = lga->trapped, .wall = lga_bits_wall(lga, y),
             .key = lga_dice_key((struct lga_dice_source){lga->seed, lga->ticks, y, 0})

@@ -138,13 +138,16 @@ void lga_gmlg_collide(struct lga *lga)
     }
     #pragma omp parallel for reduction(+ : collisions) if (sites >= LGA_LOOP_MIN)
     for (uint32_t n = 0; n < sites; n++) {
+        lga->admitted[n] = 0;
         if (lga->kind[n] != LGA_FLUID || lga->load[n] == 0) continue;
         lga->hit[n] = lga->moving[n] != 0;
-        collisions += collide(lga, n);
+        lga->admitted[n] = collide(lga, n);
+        collisions += lga->admitted[n];
         if (!lga->rule.gravity) continue;
         fall(lga, n);
         bend(lga, n);
     }
+    lga_plain_note(lga);
     #pragma omp parallel for if (sites >= LGA_LOOP_MIN)
     for (uint32_t n = 0; n < sites; n++) {
         lga->admitted[n] = lga->kind[n] == LGA_FLUID ? (uint8_t)admit(lga, n) : 0;

@@ -98,6 +98,19 @@ INLINE bool N(any)(vec bits)
     return sum != 0;
 }
 
+/* Counts the collisions of a vector of nodes: adds a bit to the number of each, up to the last. */
+INLINE void N(note)(uint64_t *number, uint32_t words, uint32_t w, vec hit)
+{
+    for (uint32_t k = 0; k < LGA_RATE_DIGITS; k++) {
+        const vec digit = N(load)(number + k * words + w);
+        N(store)(number + k * words + w, digit ^ hit);
+        hit &= digit;
+    }
+    for (uint32_t k = 0; k < LGA_RATE_DIGITS && N(any)(hit); k++) {
+        N(store)(number + k * words + w, N(load)(number + k * words + w) | hit);
+    }
+}
+
 /* Collides the movers m of a vector of nodes without loss; the table is that of lga_table.c as
  * logic.  Rest grains are kicked up where they can, *splits, and added where there is room,
  * *merges.  Returns which nodes have changed. */
@@ -184,6 +197,7 @@ INLINE uint64_t N(collide_effects)(const struct lga_row_collide *row, unsigned e
             }
             const vec hit = N(collide)(m, &r, side[p], effects & LGA_BITS_LOSS ? kick[p] : all);
             collisions += N(count)(hit);
+            if (row->hits) N(note)(row->hits, words, w, hit);
             if (effects & LGA_BITS_GRAVITY) {
                 N(fall)(m, &r, falls[p], left[p], N(load)(row->wall_left + w),
                         N(load)(row->wall_right + w));

@@ -284,8 +284,10 @@ INLINE uint64_t N(gmlg_effects)(const struct lga_row_gmlg *row, unsigned effects
             }
             for (int d = 0; d < 6; d++) had_movers |= m[d];
             const vec way[2] = {rolled.way[0][p], rolled.way[1][p]};
-            collisions += N(count)(N(collide_gmlg)(m, rest, rolled.side[p], rolled.kick[p],
-                                                   rolled.loss[p], way, tight));
+            const vec hit = N(collide_gmlg)(m, rest, rolled.side[p], rolled.kick[p],
+                                            rolled.loss[p], way, tight);
+            collisions += N(count)(hit);
+            if (row->hits) N(note)(row->hits, words, w, hit);
             if (gravity) {
                 N(fall_gmlg)(row, &rolled, w, p, had_movers, effects & LGA_BITS_VERTICAL, m, rest);
             }

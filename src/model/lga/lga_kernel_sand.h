@@ -44,6 +44,7 @@ KERNEL_TARGET static uint64_t N(stop)(const struct lga_row_stop *row)
             for (int d = 0; d < 6; d++) m[d] &= ~stops;
             const vec hit = N(collide)(m, &r, side[p], kick[p]) | stops;
             collisions += N(count)(hit);
+            if (row->hits) N(note)(row->hits, words, w, hit);
             spills |= stops;
             N(store)(row->low + w, (pair & ~rested) | (triple & rested));
             N(store)(row->high + w, (pair & rested) | triple);

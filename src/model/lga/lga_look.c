@@ -50,7 +50,7 @@ static void show(const struct lga *lga, struct grains *out, uint32_t id, uint32_
     if (out->spin) out->spin[i] = 0;
     if (out->radius) out->radius[i] = lga->radius;
     if (out->mass) out->mass[i] = lga->mass;
-    if (out->collision_rate) out->collision_rate[i] = 0;
+    if (out->collision_rate) out->collision_rate[i] = (float)lga_rate_of(lga, site);
     if (out->species) out->species[i] = 0;
 }
 

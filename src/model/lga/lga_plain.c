@@ -30,6 +30,12 @@ void lga_plain_roll(struct lga *lga)
     }
 }
 
+void lga_plain_note(struct lga *lga)
+{
+    if (!lga->rate.now) return;
+    for (uint32_t n = 0; n < lga->sites; n++) if (lga->admitted[n]) lga_rate_note(lga, n);
+}
+
 bool lga_plain_allocate(struct lga *lga)
 {
     const size_t words = (size_t)lga->lattice.rows * lga->words;

@@ -117,8 +117,10 @@ void lga_sand_collide(struct lga *lga)
     lga_plain_roll(lga);
     #pragma omp parallel for reduction(+ : collisions) if (sites >= LGA_LOOP_MIN)
     for (uint32_t n = 0; n < sites; n++) {
-        if (lga->kind[n] == LGA_FLUID && lga->moving[n]) collisions += collide(lga, n);
+        lga->admitted[n] = lga->kind[n] == LGA_FLUID && lga->moving[n] && collide(lga, n);
+        collisions += lga->admitted[n];
     }
+    lga_plain_note(lga);
     for (uint32_t row = 0; row < lga->lattice.rows && sandpile; row++) {
         spread_row(lga, row, false);
     }

@@ -118,13 +118,14 @@ void lga_step(struct lga *lga)
 {
     if (lga->bits) {
         lga_bits_step(lga);
-        return;
+    } else {
+        if (lga->rule.method == LGA_GMLG) lga_gmlg_collide(lga);
+        else lga_sand_collide(lga);
+        stream_all(lga);
+        if (lga->heap) lga_sand_settle(lga);
     }
-    if (lga->rule.method == LGA_GMLG) lga_gmlg_collide(lga);
-    else lga_sand_collide(lga);
-    stream_all(lga);
-    if (lga->heap) lga_sand_settle(lga);
     lga->ticks++;
+    lga_rate_end_tick(lga);
 }
 
 double lga_step_time(const struct lga *lga)
@@ -160,5 +161,6 @@ bool lga_step_allocate(struct lga *lga)
     if (!arena_array(arena, &lga->table, 1) || !arena_array(arena, &lga->queue, lga->queue_length)
         || !arena_array(arena, &lga->seen, lga->sites / 64 + 1)) return false;
     lga_table_fill(lga->table);
+    if (!lga_rate_allocate(lga)) return false;
     return lga->plain ? allocate_plain(lga) : lga_bits_allocate(lga);
 }

@@ -69,6 +69,25 @@ static bool blame_overlap(struct md *md, uint32_t i, double share, const char *w
     return false;
 }
 
+/* A gate that has just come back into a grain: neither stiffness nor time step would help. */
+static bool blame_gate(struct md *md, uint32_t i, uint32_t w, double share)
+{
+    blame(md, i);
+    snprintf(md->fault.text, sizeof md->fault.text, "t = %g: wall %u, a gate, shut at t = %g while "
+             "grain %u at (%.6g, %.6g) was in it, %.3g of a radius deep; let it shut (`closes`) "
+             "when nothing is in the way, or move a wall in from the side", md->fault.time, w,
+             md->scene->walls[w].closes, md->fault.grain, md->fault.x, md->fault.y, share);
+    return false;
+}
+
+/* Within the steps that a hard push needs to be noticed. */
+static bool has_just_shut(const struct md *md, uint32_t w)
+{
+    const struct wall *wall = &md->scene->walls[w];
+    const double since = md_time(md) - wall->closes;
+    return wall_is_gate(wall) && since >= -md->dt && since <= 3 * md->dt;
+}
+
 static bool check_overlaps(struct md *md)
 {
     const double limit = md->scene->overlap_limit;
@@ -95,7 +114,9 @@ static bool check_overlaps(struct md *md)
         const struct wall_nearest nearest = wall_nearest(&md->walls_now[link->wall],
             x - md->image_x[link->image], y - md->image_y[link->image]);
         const double share = 1 - nearest.distance / md->grains[link->grain].radius;
-        if (share > limit) return blame_overlap(md, link->grain, share, "a wall");
+        if (!(share > limit)) continue;
+        return has_just_shut(md, link->wall) ? blame_gate(md, link->grain, link->wall, share)
+                                             : blame_overlap(md, link->grain, share, "a wall");
     }
     return true;
 }

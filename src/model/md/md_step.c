@@ -49,6 +49,12 @@ FORCE_INLINE void move_verlet(struct grain *g, struct half *h, double ax, double
     }
 }
 
+/* In free flight the derivatives die away geometrically and would become denormal numbers, with
+ * which processors take a hundred times longer; what is far below any physical scale goes to 0. */
+static const double negligible = 1e-270;
+
+FORCE_INLINE double without_rest(double value) { return value + negligible - negligible; }
+
 FORCE_INLINE void correct_gear(struct grain *g, struct half *h, struct gear *d, double ax,
                                double ay, double at, double dt, unsigned form)
 {
@@ -59,12 +65,12 @@ FORCE_INLINE void correct_gear(struct grain *g, struct half *h, struct gear *d, 
     g->uy += 251.0 / 360 * ey / dt;
     d->x2 += ex;
     d->y2 += ey;
-    d->x3 += 11.0 / 18 * ex;
-    d->y3 += 11.0 / 18 * ey;
-    d->x4 += 1.0 / 6 * ex;
-    d->y4 += 1.0 / 6 * ey;
-    d->x5 += 1.0 / 60 * ex;
-    d->y5 += 1.0 / 60 * ey;
+    d->x3 = without_rest(d->x3 + 11.0 / 18 * ex);
+    d->y3 = without_rest(d->y3 + 11.0 / 18 * ey);
+    d->x4 = without_rest(d->x4 + 1.0 / 6 * ex);
+    d->y4 = without_rest(d->y4 + 1.0 / 6 * ey);
+    d->x5 = without_rest(d->x5 + 1.0 / 60 * ex);
+    d->y5 = without_rest(d->y5 + 1.0 / 60 * ey);
     h->hx = g->ux;
     h->hy = g->uy;
     if (form & ROTATES) {
@@ -72,7 +78,7 @@ FORCE_INLINE void correct_gear(struct grain *g, struct half *h, struct gear *d, 
         h->angle += 1.0 / 6 * et;
         g->rim += 5.0 / 6 * et / dt;
         d->a2 += et;
-        d->a3 += 1.0 / 3 * et;
+        d->a3 = without_rest(d->a3 + 1.0 / 3 * et);
         h->hrim = g->rim;
     }
 }
