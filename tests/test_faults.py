@@ -176,7 +176,8 @@ class Faults(unittest.TestCase):
         self.every_allocation("poor.png", ["frame", "kept", "--forces", "--arrows", "--map",
                                            "density"])
         self.every_allocation("poor-maps", ["map", "kept", "--as", "png,npy,vti,csv"])
-        self.every_allocation("poor-tables", ["export", "kept"], [])
+        for kind in ("csv", "vti", "lammps", "extxyz"):
+            self.every_allocation("poor-" + kind, ["export", "kept", "--to", kind], [])
 
     # Programs, libraries, fonts
 
