@@ -10,7 +10,8 @@
 /* Counts the grains in the cells of thread t's share, which a sweep keeps up to date. */
 void dsmc_heap_load(struct dsmc *dsmc, uint32_t t, uint32_t team);
 
-/* Moves all grains by one step, once all cells are counted.  Every thread of a team calls it, with its own sums. */
+/* Moves all grains by one step, once all cells are counted.  Every thread of a team calls it,
+ * with its own sums. */
 void dsmc_heap_sweep(struct dsmc *dsmc, struct dsmc_sums *sums);
 
 #endif

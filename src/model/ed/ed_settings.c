@@ -141,7 +141,8 @@ static void warn_of_cut_off(const struct scene *scene, const struct ed_settings 
     const double g = hypot(scene->gravity[0], scene->gravity[1]), d = 2 * scene->radius_mean;
     const double fall = g > 0 ? sqrt(d / g) : INFINITY;
     if (!(settings->t_c > cut_off_share_max * fall)) return;
-    findings_tell(findings, scene, FINDING_WARNING, "ed.t_c", "ed.t_c = %.3g is %.2g of the time in "
+    findings_tell(findings, scene, FINDING_WARNING, "ed.t_c",
+                  "ed.t_c = %.3g is %.2g of the time in "
         "which a grain falls through its diameter: beds at rest stir, flows keep energy that "
         "collisions should take; use at most %.2g, or delete the line and sandreel chooses",
         settings->t_c, settings->t_c / fall, cut_off_share_max * fall);
