@@ -13,6 +13,7 @@
 #include "model/simulation.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,7 +48,7 @@ static const struct change { effects_t effect; const char *out, *in; } changes[]
     {EFFECT_COLLISION_COUNT, "measure.collision_counts=false", "measure.collision_counts=true"},
     {EFFECT_IMPACT, "measure.impact_parameters=false", "measure.impact_parameters=true"},
     {EFFECT_STRESS, "measure.stress=false", "measure.stress=true"},
-    {EFFECT_SHEAR, "dsmc.shear_rate=0", "dsmc.shear_rate=0.01"},
+    {EFFECT_SHEAR, "shear_rate=0", "shear_rate=0.01"},
 };
 
 struct keys {
@@ -208,41 +209,90 @@ static bool compare(struct form *a, struct form *b, struct error *error)
     return true;
 }
 
-bool effects_measure(const struct setup_request *request, effects_t effect,
-                     struct effects_cost *cost, struct error *error)
+/* ---- an effect of a user's scene ------------------------------------------------------------ */
+
+struct effects_probe {
+    struct setup_request request;
+    struct form with;
+};
+
+struct effects_probe *effects_open(const struct setup_request *request, struct error *error)
+{
+    struct effects_probe *probe = calloc(1, sizeof *probe);
+    if (!probe) {
+        error_set(error, "not enough memory");
+        return NULL;
+    }
+    probe->request = *request;
+    if (form_open(&probe->with, request, error) && form_warm(&probe->with, warm_seconds, error)) {
+        return probe;
+    }
+    effects_close(probe);
+    return NULL;
+}
+
+void effects_close(struct effects_probe *probe)
+{
+    if (!probe) return;
+    form_close(&probe->with);
+    free(probe);
+}
+
+/* Why the scene of `request` cannot be held against one without the effect, or NULL.  No grain is
+ * placed to find that out. */
+static const char *why_not(const struct setup_request *request, effects_t effect)
+{
+    struct setup_request bare = *request;
+    struct setup setup;
+    struct error error = {0};
+    bare.place = false;
+    const bool loaded = setup_load(&setup, &bare, &error);
+    const bool still = loaded && setup.scene->effects & effect;
+    setup_free(&setup);
+    return !loaded ? "the scene does not run without it"
+           : still ? "another effect calls for it too" : NULL;
+}
+
+static bool measure_against(struct effects_probe *probe, const struct setup_request *request,
+                            struct effects_cost *cost, struct error *error)
+{
+    struct form *with = &probe->with, without = {0};
+    bool done = form_open(&without, request, error) && form_copy(with, &without, error);
+    with->best = INFINITY;
+    done = done && compare(with, &without, error);
+    if (done) {
+        *cost = (struct effects_cost){.measured = true, .with = with->best,
+            .without = without.best, .bytes = with->bytes - without.bytes};
+    }
+    form_close(&without);
+    return done;
+}
+
+bool effects_measure(struct effects_probe *probe, effects_t effect, struct effects_cost *cost,
+                     struct error *error)
 {
     *cost = (struct effects_cost){0};
     const struct change *change = change_of(effect);
-    struct keys *keys = calloc(1, sizeof *keys);
-    struct form with = {0}, without = {0};
-    if (!keys) return error_set(error, "not enough memory");
-    bool done = form_open(&with, request, error);
-    if (done && (!change || !change->out[0])) {
+    if (!change || !change->out[0]) {
         snprintf(cost->why, sizeof cost->why, "part of the scene: without it nothing compares");
-    } else if (done) {
-        for (uint32_t k = 0; k < request->override_count; k++) add_key(keys, request->overrides[k]);
-        pin_settings(keys, with.setup.scene, with.setup.model);
-        add_all(keys, change->out, with.setup.scene->species_count);
-        struct setup_request other = *request;
-        other.overrides = keys->list;
-        other.override_count = keys->count;
-        struct error reason = {0};
-        if (!form_open(&without, &other, &reason)) {
-            snprintf(cost->why, sizeof cost->why, "the scene does not run without it");
-        } else if (without.setup.scene->effects & effect) {
-            snprintf(cost->why, sizeof cost->why, "another effect calls for it too");
-        } else if (form_warm(&with, warm_seconds, &reason) && form_copy(&with, &without, &reason)
-                   && compare(&with, &without, &reason)) {
-            *cost = (struct effects_cost){.measured = true, .with = with.best,
-                .without = without.best, .bytes = with.bytes - without.bytes};
-        } else {
-            snprintf(cost->why, sizeof cost->why, "%.180s", reason.text);
-        }
+        return true;
     }
-    form_close(&without);
-    form_close(&with);
+    struct keys *keys = calloc(1, sizeof *keys);
+    if (!keys) return error_set(error, "not enough memory");
+    struct setup_request other = probe->request;
+    const struct setup *setup = &probe->with.setup;
+    for (uint32_t k = 0; k < other.override_count; k++) add_key(keys, other.overrides[k]);
+    pin_settings(keys, setup->scene, setup->model);
+    add_all(keys, change->out, setup->scene->species_count);
+    other.overrides = keys->list;
+    other.override_count = keys->count;
+    struct error reason = {0};
+    const char *why = why_not(&other, effect);
+    if (why || !measure_against(probe, &other, cost, &reason)) {
+        snprintf(cost->why, sizeof cost->why, "%.180s", why ? why : reason.text);
+    }
     free(keys);
-    return done;
+    return true;
 }
 
 /* ---- each effect alone --------------------------------------------------------------------- */
@@ -313,6 +363,9 @@ bool effects_bench(const struct model *model,
     begin_keys(all, model);
     const struct setup_request request = {.path = "gas", .text = gas_text, .overrides = keys->list,
                                           .override_count = keys->count, .place = true};
+    /* One thread: others that wait for it would count as work. */
+    const int threads = omp_get_max_threads();
+    omp_set_num_threads(1);
     bool done = form_open(&none, &request, error) && form_warm(&none, warm_seconds, error)
         && bench_one(model, "none", keys, &none, &row, error);
     if (done) tell(context, &row);
@@ -340,6 +393,7 @@ bool effects_bench(const struct model *model,
     none.best = INFINITY;
     done = done && bench_one(model, "all", all, &none, &row, error);
     if (done) tell(context, &row);
+    omp_set_num_threads(threads);
     form_close(&none);
     free(keys);
     return done;

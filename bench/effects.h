@@ -16,10 +16,14 @@ struct effects_cost {
     char   why[200];
 };
 
-/* What `effect` costs on the scene of `request`, which must be on: the scene runs for a moment,
- * then its state goes on with the effect and without it. */
-bool effects_measure(const struct setup_request *request, effects_t effect,
-                     struct effects_cost *cost, struct error *error);
+/* A scene that has run for a moment, so that effects can be taken out of it; NULL with an error. */
+struct effects_probe;
+struct effects_probe *effects_open(const struct setup_request *request, struct error *error);
+void effects_close(struct effects_probe *probe);
+
+/* What `effect`, which must be on, costs on that scene: its state goes on with it and without. */
+bool effects_measure(struct effects_probe *probe, effects_t effect, struct effects_cost *cost,
+                     struct error *error);
 
 /* One row of `bench --effects`. */
 struct effects_row {

@@ -109,14 +109,12 @@ static bool tell_ground(const struct setup *setup, struct error *error)
 }
 
 /* What it costs here: measured now, by going on without it from the same state. */
-static void tell_cost(const struct options *options, const struct model *model, effects_t effect)
+static void tell_cost(struct effects_probe *probe, const struct model *model, effects_t effect)
 {
-    const struct setup_request request = {.path = options->operands[0],
-        .overrides = options->overrides, .override_count = options->override_count, .place = true};
     struct effects_cost cost;
     struct error error = {0};
     char bytes[32];
-    if (!effects_measure(&request, effect, &cost, &error)) {
+    if (!effects_measure(probe, effect, &cost, &error)) {
         printf("  %-18s   cost: %s\n", "", error.text);
     } else if (!cost.measured) {
         printf("  %-18s   cost: not measured (%s)\n", "", cost.why);
@@ -131,16 +129,23 @@ static void tell_cost(const struct options *options, const struct model *model, 
 static void explain(const struct options *options, const struct scene *scene,
                     const struct model *model)
 {
+    const struct setup_request request = {.path = options->operands[0],
+        .overrides = options->overrides, .override_count = options->override_count, .place = true};
     struct scene_reason reason;
+    struct error error = {0};
+    struct effects_probe *probe = effects_open(&request, &error);
     for (int on = 1; on >= 0; on--) {
         printf("\neffects that are %s:\n", on ? "on" : "off");
         for (uint32_t k = 0; scene_explain(scene, k, &reason); k++) {
             if (reason.on != (on == 1)) continue;
             printf("  %-18s %s\n", effect_word(reason.effect), effect_doc(reason.effect));
             printf("  %-18s   %s\n", "", reason.why);
-            if (on) tell_cost(options, model, reason.effect);
+            if (on && probe) tell_cost(probe, model, reason.effect);
+            if (on && !probe) printf("  %-18s   cost: not measured (%s)\n", "", error.text);
+            fflush(stdout);
         }
     }
+    effects_close(probe);
 }
 
 int cli_check(const struct options *options)
