@@ -310,6 +310,8 @@ static void test_no_grain_is_lost_or_doubled_in_a_million_ticks(void **unused)
                                     .fall = 0.01, .smooth = 0.5});
     check_million((struct lga_rule){.method = LGA_SANDPILE, .gain = 1, .loss = 0.1,
                                     .gravity = true, .fall = 0.1, .strict = true});
+    check_million((struct lga_rule){.method = LGA_SANDPILE, .gain = 1, .loss = 0.1,
+                                    .gravity = true, .fall = 0.1, .fly = true, .heap = true});
     check_million((struct lga_rule){.gain = 1, .inelastic = 0.1, .gravity = true, .fall = 0.1,
                                     .wall_stop = 0.1});
     check_million((struct lga_rule){.gain = 1, .inelastic = 0.5, .gravity = true, .fall = 0.5,
