@@ -33,18 +33,18 @@ static void fly_one(const char *method, const char *species, const char *velocit
 static void test_a_wall_that_comes_nearer_gives_twice_its_speed(void **unused)
 {
     (void)unused;
+    static const char *const piston =
+        "{ shape = \"segment\"; points = ((5.0, 2.0), (5.0, 18.0)); velocity = (0.5, 0.0); }";
     for (int k = 0; k < METHODS; k++) {
         struct grains seen;
         /* Relative to the wall the grain comes with 1.5 and leaves with 1.5 r. */
         fly_one(methods[k], "restitution = 1.0;", "(-1.0, 0.25)",
-                "{ shape = \"segment\"; points = ((5.0, 2.0), (5.0, 18.0)); velocity = (0.5, 0.0); }",
-                6, &seen);
+                piston, 6, &seen);
         CHECK_NEAR(seen.vx[0], 2, 1e-5);
         CHECK_NEAR(seen.vy[0], 0.25, 1e-5);
         grains_free(&seen);
         fly_one(methods[k], "restitution = 0.6;", "(-1.0, 0.25)",
-                "{ shape = \"segment\"; points = ((5.0, 2.0), (5.0, 18.0)); velocity = (0.5, 0.0); }",
-                6, &seen);
+                piston, 6, &seen);
         CHECK_NEAR(seen.vx[0], 0.5 + 0.6 * 1.5, 1e-5);
         grains_free(&seen);
     }
