@@ -29,8 +29,20 @@ view = { size = (160, 120); };
 output = { frames = 0.1; log = 0.05; maps = 0.4; checkpoint = 0.15; checkpoint_wall = 0.0; };
 """
 
+# More grains than one strip of md has, so that threads share the loops and the list.
+CROWD = """
+model = "md";
+until = 0.03;
+box = (0.0, 0.0, 80.0, 80.0);
+gravity = (0.0, -10.0);
+grains = ({ radius = 0.5; restitution = 0.8; friction = 0.3; });
+placements = ({ spacing = 1.05; temperature = 4.0; });
+view = { size = (160, 160); range = (0.0, 5.0); };
+output = { frames = 0.01; log = 0.005; maps = 0.0; checkpoint = 0.004; checkpoint_wall = 0.0; };
+"""
+
 _QUICK = ["--quick", "--size", "160x120", "-s", "output.checkpoint_wall=0"]
-DISCS_FILE = "discs.cfg"
+DISCS_FILE, CROWD_FILE = "discs.cfg", "crowd.cfg"
 
 # Movies are bytes of ffmpeg, which makes the same of the same frames on any number of threads.
 _FILM = ["-s", "output.movie=film.mp4"] if shutil.which("ffmpeg") else []
@@ -64,6 +76,7 @@ CASES = [
                              "output.checkpoint=3"]),
     ("lga-sandpile", "pile", [*_QUICK, "--model", "lga", "--method", "sandpile", "-s",
                               "output.dump=true"]),
+    ("md-many", CROWD_FILE, []),
 ]
 
 
@@ -79,8 +92,9 @@ def cases(program):
 
 
 def write_scenes(folder):
-    with open(os.path.join(folder, DISCS_FILE), "w", encoding="utf-8") as out:
-        out.write(DISCS)
+    for name, text in ((DISCS_FILE, DISCS), (CROWD_FILE, CROWD)):
+        with open(os.path.join(folder, name), "w", encoding="utf-8") as out:
+            out.write(text)
 
 
 def fnv(data):

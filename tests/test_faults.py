@@ -176,7 +176,8 @@ class Faults(unittest.TestCase):
         self.every_allocation("poor.png", ["frame", "kept", "--forces", "--arrows", "--map",
                                            "density"])
         self.every_allocation("poor-maps", ["map", "kept", "--as", "png,npy,vti,csv"])
-        self.every_allocation("poor-tables", ["export", "kept"], [])
+        for kind in ("csv", "vti", "lammps", "extxyz"):
+            self.every_allocation("poor-" + kind, ["export", "kept", "--to", kind], [])
 
     # Programs, libraries, fonts
 
@@ -303,12 +304,79 @@ class Faults(unittest.TestCase):
             with open(name, "rb") as file:
                 data = bytearray(file.read())
             change(data)
-            at = rundir.CHECKPOINT_HEADER.size - 8
-            data[at - 8:at] = struct.pack("<Q", rundir.fnv(data[at + 8:]))
-            data[at:at + 8] = struct.pack("<Q", rundir.fnv(data[:at]))
+            self.rehash(data)
             with open(name, "wb") as file:
                 file.write(data)
         return self.call("run", "forged", "--resume", *QUIET)
+
+    # Ways to bend a word: none, huge, an index far off or off by one, no number, a huge number.
+    WAYS = (lambda word: 0, lambda word: 2**64 - 1, lambda word: word ^ 1 << 33,
+            lambda word: word ^ 1, lambda word: 0x7ff8000000000000, lambda word: 0x7e37e43c8800759c)
+
+    def part_names(self):
+        """What belongs to no model: how far each output is, and what is gathered; and the numbers of
+        the grains, by which it is gathered."""
+        names = ["run.checkpoint_next", "run.next", "run.maps", "run.wall", "log.size", "log.rows",
+                 "log.time_last", "log.impulse_last", "log.stress_last", "map.snapshots", "map.from",
+                 "map.to", "stress.from", "stress.snapshots", "stress.before", "stress.moments",
+                 "tally.bodies", "tally.mass_in", "tally.mass_out", "tally.impact", "tally.stress",
+                 "tally.stress_total", "source.0", "ed.id"]
+        names += ["histograms." + name for name in (
+            "from", "impact.size", "impact.rows", "collisions.size", "collisions.rows", "before",
+            "known_count", "known")]
+        return {rundir.fnv(name.encode()): name for name in names}
+
+    def test_forged_records_of_a_run_are_refused_or_it_goes_on(self):
+        with open(self.path("rich.cfg"), "w", encoding="utf-8") as out:
+            out.write(rundir.DISCS + """
+count_max = 400;
+sources = ({ position = (4.0, 11.4); rate = 20.0; });
+measure = { impact_parameters = true; impact_bins = 4; collision_counts = true; stress = true;
+            average = (0.0, 0.3); cell = 4.0; fields = ["density"]; };
+""")
+        words = ["rich.cfg", *QUIET, "--model", "ed", "--until", "0.2", "-s", "output.frames=0", "-s",
+                 "output.checkpoint=0.1", "-s", "output.tallies=0.1", "-s", "phases=()"]
+        done = self.call("run", *words, "-o", "rich")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        names, met, tries = self.part_names(), set(), 0
+        newest = self.path("rich", "checkpoint", "1.checkpoint")
+        with open(newest, "rb") as file:
+            whole = file.read()
+        fields = rundir.CHECKPOINT_HEADER.unpack_from(whole)
+        at = rundir.CHECKPOINT_HEADER.size + fields[5]
+        while at < len(whole):
+            name, width, count = struct.unpack_from("<QQQ", whole, at)
+            size = (width * count + 7) // 8 * 8
+            if name in names and size > 0:
+                met.add(names[name])
+                word = at + 24 + 8 * (tries % (size // 8))
+                for way in self.WAYS if STRIDE == 1 else [self.WAYS[len(met) % len(self.WAYS)]]:
+                    self.try_forged(whole, word, way, names[name], words)
+                    tries += 1
+            at += 24 + size
+        self.assertGreater(len(met), 15, met)
+
+    def try_forged(self, whole, at, way, name, words):
+        self.clean("forged")
+        shutil.copytree(self.path("rich"), self.path("forged"))
+        os.unlink(self.path("forged", "checkpoint", "0.checkpoint"))
+        data = bytearray(whole)
+        struct.pack_into("<Q", data, at, way(struct.unpack_from("<Q", data, at)[0]))
+        self.rehash(data)
+        with open(self.path("forged", "checkpoint", "1.checkpoint"), "wb") as file:
+            file.write(data)
+        # In bounded memory: what asks for much is to be refused, not given.
+        done = self.call("run", *words, "-o", "forged", "--until", "0.3", "--resume",
+                         before=["prlimit", "--as=4000000000"])
+        self.assertIn(done.returncode, (0, 1), f"{name}: {done.returncode} {done.stderr}")
+        if done.returncode:
+            self.assert_told(done, 1)
+
+    @staticmethod
+    def rehash(data):
+        at = rundir.CHECKPOINT_HEADER.size - 8
+        data[at - 8:at] = struct.pack("<Q", rundir.fnv(data[at + 8:]))
+        data[at:at + 8] = struct.pack("<Q", rundir.fnv(data[:at]))
 
     def test_a_checkpoint_of_another_version_or_scene_is_refused_with_what_differs(self):
         self.assertEqual(self.forge(lambda data: None).returncode, 0)

@@ -26,7 +26,7 @@ import rundir
 PROGRAM = os.path.abspath(sys.argv[1])
 FAULTY = os.path.abspath(sys.argv[2])
 MODE = sys.argv[3] if len(sys.argv) > 3 else "moments"
-NUMBER = int(sys.argv[4]) if len(sys.argv) > 4 else 14
+NUMBER = int(sys.argv[4]) if len(sys.argv) > 4 else 15
 SKIPPED = 77
 
 

@@ -60,7 +60,7 @@ bool file_save(const char *path, const void *bytes, size_t size, struct error *e
 
 void *file_load(const char *path, size_t size_max, size_t *size, struct error *error)
 {
-    struct stat status;
+    struct stat status = {0};
     FILE *stream = fopen(path, "rb");
     if (!stream) {
         error_set(error, "%s: cannot open this file: %s", path, strerror(errno));
@@ -68,7 +68,8 @@ void *file_load(const char *path, size_t size_max, size_t *size, struct error *e
     }
     char *bytes = NULL;
     if (fstat(fileno(stream), &status) != 0 || !S_ISREG(status.st_mode)) {
-        error_set(error, "%s: not an ordinary file", path);
+        error_set(error, "%s: %s", path, S_ISDIR(status.st_mode) ? "this is a directory, not a file"
+                                                                 : "not an ordinary file");
     } else if ((uintmax_t)status.st_size > size_max) {
         error_set(error, "%s: larger than %zu bytes, "
                          "which is more than this can be", path, size_max);

@@ -4,8 +4,8 @@
  * give it away; an odd one as the saved state below the hashes, which is then read record by record
  * as a model would, into arrays of known size.
  *
- * The hashes guard against damage, not against a forger: what a model's own indices say is
- * trusted once the bytes are known to be those that were written.
+ * The hashes guard against damage, not against a forger: what a model makes of a state with the
+ * right hashes is for test_forged.c.
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "base/archive.h"
