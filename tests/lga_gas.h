@@ -109,7 +109,8 @@ static inline struct totals totals(const struct lga *lga)
 static inline void check_cooling(struct lga_rule rule, bool never_warms, const double expected[4])
 {
     static const int times[4] = {1, 4, 16, 256};
-    double mean[4] = {0};
+    struct sample ratio[4];
+    memset(ratio, 0, sizeof ratio);
     enum { SIDE = 128, SEEDS = 3 };
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         struct lga *lga = gas(SIDE, SIDE, rule, seed);
@@ -126,7 +127,8 @@ static inline void check_cooling(struct lga_rule rule, bool never_warms, const d
             CHECK(now.mass == start.mass && now.twice_x == start.twice_x && now.y == start.y);
             if (never_warms) CHECK(now.movers <= before);
             before = now.movers;
-            if (t == times[k]) mean[k++] += (double)now.movers / (double)start.movers / SEEDS;
+            if (t != times[k]) continue;
+            sample_add(&ratio[k++], (double)now.movers / (double)start.movers);
         }
         gas_free(lga);
     }
@@ -134,10 +136,12 @@ static inline void check_cooling(struct lga_rule rule, bool never_warms, const d
      * changed it: at most sqrt(E0 (1 - ratio)) / E0, from the reference's one seed and our three;
      * at late times like the survivors of a start that itself scatters by 1/sqrt(E0). */
     for (int k = 0; k < 4; k++) {
-        print_message("    E/E0 at t = %-4d %.4f (%d seeds)  reference %.4f\n", times[k], mean[k],
-                      SEEDS, expected[k]);
+        char when[40], shown[40];
+        snprintf(when, sizeof when, "t = %d", times[k]);
+        snprintf(shown, sizeof shown, "%.4f", expected[k]);
+        sample_tell(when, "E/E0", &ratio[k], shown);
         const double one = sqrt(fmin(1 - expected[k], expected[k]) / 14746.0) + 1 / 14746.0;
-        CHECK_NEAR(mean[k], expected[k], 3 * one * sqrt(1 + 1.0 / SEEDS));
+        CHECK_NEAR(sample_mean(&ratio[k]), expected[k], 3 * one * sqrt(1 + 1.0 / SEEDS));
     }
 }
 

@@ -396,6 +396,22 @@ class Import(Shared):
                     difference = (difference + 8) % 16 - 8
                 numpy.testing.assert_allclose(difference, 0, atol=1e-12 if exact else 1e-5)
 
+    def test_dsmc_begins_with_the_discs_of_an_earlier_run(self):
+        """As docs/exchange.md has it."""
+        gas = ("cooling", "-s", "quick=true", "-s", "phases=()", "-s", "output.frames=0.5", "-s",
+               "output.dump=true", "-j1", "--force")
+        self.say("run", *gas, "--model", "ed", "--until", "2", "-o", "gas")
+        self.say("export", "gas", "--to", "csv", "--frame", "4", "-o", "gas")
+        self.say("run", *gas, "--model", "dsmc", "--until", "0.1", "-o", "points",
+                 "-s", "placements.[0].kind=file", "-s", "placements.[0].file=gas/grains_000004.csv",
+                 "-s", "placements.[0].temperature=0", "-s", "grains.[0].restitution=0.8")
+        discs, points = (numpy.load(self.path(name)) for name in ("gas/dump/000004.npy",
+                                                                  "points/dump/000000.npy"))
+        self.assertEqual(len(points), 2500)
+        discs, points = (grains[numpy.argsort(grains["id"])] for grains in (discs, points))
+        for name, most in (("x", 89), ("y", 89), ("vx", 8), ("vy", 8)):     # single precision
+            numpy.testing.assert_allclose(points[name], discs[name], rtol=0, atol=most * 2.0**-24)
+
     def test_a_run_goes_on_from_the_csv_or_the_lammps_dump_of_another(self):
         self.say("export", "kept", "--to", "csv,lammps", "-o", "last", "-t", "0.6")
         self.check(self.begin("last/grains_000006.csv"), self.frames[-1])

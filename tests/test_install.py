@@ -103,8 +103,9 @@ class Install(unittest.TestCase):
 
     def test_fish_finds_the_completion_in_the_installed_data(self):
         share = os.path.dirname(self.only("**/share/sandreel"))
+        path = os.path.dirname(self.program) + ":" + os.environ["PATH"]
         done = self.call(self.need("fish"), "-c", "complete -C 'sandreel swe'", XDG_DATA_DIRS=share,
-                         XDG_CONFIG_HOME=self.empty)
+                         XDG_CONFIG_HOME=self.empty, PATH=path)
         self.assertEqual(done.stdout.split("\t")[0].strip(), "sweep")
 
     def test_zsh_finds_the_completion_on_its_path(self):

@@ -250,6 +250,9 @@ def test_a_session_goes_on_from_a_run():
     done = sandreel("live", "r", "--commands", "commands", "-o", "a", "--force")
     assert abs(float(done.stdout.splitlines()[0]) - 0.5) < 0.01
     assert "same last state" in sandreel("replay", "a", "-o", "b", "--force").stderr
+    # The next session in that folder begins at time 0 again, and so does its repetition.
+    live("a", "go until 0.1\nset gravity (1, 1)\ngo until 0.2\n")
+    assert "same last state" in sandreel("replay", "a", "-o", "b", "--force").stderr
 
 
 def test_what_cannot_be_is_refused_and_changes_nothing():
@@ -276,6 +279,51 @@ def test_what_cannot_be_is_refused_and_changes_nothing():
         assert verdict or "commands:2:" in done.stderr, (command, done.stderr)
         assert end_of("a") == PLAIN, command
     assert not os.path.exists("x.png")
+
+
+EVERY = """help zoom
+speed max
+go until 0.2
+pause
+step 3
+get time
+set gravity (1, -2)
+color spin
+map density
+zoom 2
+pan 0.1 0
+follow 5
+fit
+inspect 5
+push 9 9 1 0
+gate open
+tilt 5
+pour 2
+go until 0.6
+frame p
+movie f.gif start
+go until 0.7
+movie stop
+checkpoint state
+back
+expect grains >= 70
+reset
+quit
+get nonsense
+"""
+
+
+def test_every_command_of_the_grammar_is_carried_out():
+    verbs = re.findall(r"^([a-z]+)\b", live("a", "help\n").stdout, re.M)
+    said = {line.split()[0] for line in EVERY.splitlines()}
+    assert len(verbs) > 20 and not set(verbs) - said - {"a"}, set(verbs) - said
+    done = live("a", EVERY)
+    assert "zoom FACTOR" in done.stdout, done
+    for name in ("p.png", "f.gif", "state.checkpoint", "log.csv"):
+        assert (name == "log.csv") != os.path.exists("a/" + name), name
+    assert end_of("a")[:2] == (0, 0)            # `reset`, and nothing after `quit`
+    sandreel("replay", "a", "-o", "b", "--force")
+    assert read("a/p.png") == read("b/p.png")
 
 
 def test_expectations_are_counted():

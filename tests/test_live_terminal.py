@@ -147,6 +147,8 @@ def test_commands_are_edited_completed_and_remembered():
     time.sleep(0.3)
     terminal.type(":get gravity\r")
     terminal.wait(b"(0.0, -3.0)")
+    terminal.type(":get grai\t_o\t\r")         # grains, grains_in, grains_out, keys of grains
+    terminal.wait(re.compile(rb"\x1b\[30;1H\x1b\[0m\x1b\[K0"))       # none has left
     terminal.type(":nonsense\r")
     terminal.wait(b"there is no command")
     terminal.type(":help\r")

@@ -6,10 +6,12 @@ import http.client
 import json
 import os
 import signal
+import socket
 import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import urllib.parse
 
@@ -130,6 +132,41 @@ def test_pictures_come_when_somebody_waits_and_something_has_changed(live):
     live.command("pause")
     status = json.loads(answer.headers["X-Status"])
     assert status["time"] > 0 and status["grains"] == 100
+
+
+def steps_in(live, seconds):
+    before = int(live.command("get steps")["text"])
+    time.sleep(seconds)
+    return int(live.command("get steps")["text"]) - before
+
+
+def test_several_watch_and_a_slow_one_holds_nobody_up(live):
+    # One asks for a picture after the other and never reads any: its line fills up.
+    slow = socket.create_connection(("127.0.0.1", live.port))
+    slow.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    slow.sendall(b"".join(b"GET %sframe?as=raw HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n"
+                          % (live.path.encode(), live.port) for _ in range(20)))
+    live.command("go")
+    seen = [[], [], []]
+
+    def watch(numbers):
+        last = 0
+        while len(numbers) < 8:
+            answer, _ = live.get("frame?as=raw&after=%d" % last)
+            if answer.status == 200:
+                last = int(answer.headers["X-Frame"])
+                numbers.append(last)
+    watchers = [threading.Thread(target=watch, args=(numbers,)) for numbers in seen]
+    for watcher in watchers:
+        watcher.start()
+    assert steps_in(live, 0.3) > 0
+    for watcher in watchers:
+        watcher.join(60)
+    assert all(len(numbers) == 8 and numbers == sorted(set(numbers)) for numbers in seen), seen
+    # It goes on, and commands are served, while the slow one still does not read.
+    assert steps_in(live, 0.3) > 0
+    live.command("pause")
+    slow.close()
 
 
 def test_a_saved_picture_is_what_is_seen(live):

@@ -128,7 +128,8 @@ const struct command cli_commands[] = {
      bench_options, 0, OPTIONS_OPERANDS_MAX, cli_bench},
     {"cost", "SCENE", "what accuracy costs: error against wall time, for every model and setting",
      "Writes NAME-cost/ with cost.csv, cost.json and picture.png.  What is compared stands in\n"
-     "`measure.cost` of the scene.  A setting that takes longer than --time-limit is left out.\n"
+     "`measure.cost` of the scene, with what in `measure.reference`.  A setting that takes longer\n"
+     "than --time-limit (10 s) is left out.  The reference is kept in $XDG_CACHE_HOME/sandreel.\n"
      "`sandreel run SCENE --accuracy 1%` then takes the fastest one that is near enough.\n",
      cost_options, 1, 1, cli_cost},
     {"stress", "[CASE...]", "runs the hard cases and tells what each of them held",

@@ -107,9 +107,8 @@ static json_t *describe(const struct cost_table *table)
         json_array_append_new(points, json_pack(
             "{s:s, s:o, s:f, s:f, s:f, s:f, s:o, s:b, s:b, s:b}", "setting", p->label, "keys", keys,
             "wall_seconds", p->wall, "cpu_seconds", p->cpu, "error", p->error, "error_noise",
-            p->error_noise, "observables", errors, "front", p->front,
-            "reference", p->reference, "cached",
-            p->cached));
+            p->error_noise, "observables", errors, "front", p->front, "reference", p->reference,
+            "cached", p->cached));
     }
     json_t *orders = json_array();
     for (uint32_t k = 0; k < table->order_count; k++) {
@@ -300,7 +299,7 @@ static bool save(const struct cost_table *table, const char *directory, const ch
         && file_save(folder_path(path, directory, "cost.json"), text, strlen(text), error)
         && draw(table, directory, error);
     if (done && cache && file_make_directory(cache, &ignored)) {
-        file_save(cli_cost_table(path, cache, table->hash), text, strlen(text), &ignored);
+        file_save(cli_cost_choose_table(path, cache, table->hash), text, strlen(text), &ignored);
     }
     free(text);
     return done;
@@ -325,7 +324,7 @@ int cli_cost(const struct options *options)
     if (options->values[OPTION_output]) {
         snprintf(directory, sizeof directory, "%s", options->values[OPTION_output]);
     } else {
-        cli_cost_directory(directory, options->operands[0]);
+        cli_cost_choose_directory(directory, options->operands[0]);
     }
     struct cost_table *table = calloc(1, sizeof *table);
     const bool json = options_given(options, OPTION_json);

@@ -11,10 +11,10 @@
 #include <jansson.h>
 
 /* NAME-cost, in the present folder. */
-void cli_cost_directory(char directory[FILE_PATH_MAX], const char *scene);
+void cli_cost_choose_directory(char directory[FILE_PATH_MAX], const char *scene);
 
 /* Where the cache keeps the table of a scene. */
-char *cli_cost_table(char path[FILE_PATH_MAX], const char *cache, uint64_t hash);
+char *cli_cost_choose_table(char path[FILE_PATH_MAX], const char *cache, uint64_t hash);
 
 /* With --accuracy or --budget: adds the keys of the fastest (nearest) setting that holds it, from
  * NAME-cost/cost.json or the cache, if they are of this very scene.  The keys live in `table`,

@@ -13,13 +13,13 @@
 #include <string.h>
 
 /* "hard/cradle", "scenes/mine.cfg" -> "cradle-cost", "mine-cost": beside where we are. */
-void cli_cost_directory(char directory[FILE_PATH_MAX], const char *scene)
+void cli_cost_choose_directory(char directory[FILE_PATH_MAX], const char *scene)
 {
     const char *slash = strrchr(scene, '/'), *base = slash ? slash + 1 : scene;
     snprintf(directory, FILE_PATH_MAX, "%.*s-cost", (int)strcspn(base, "."), base);
 }
 
-char *cli_cost_table(char path[FILE_PATH_MAX], const char *cache, uint64_t hash)
+char *cli_cost_choose_table(char path[FILE_PATH_MAX], const char *cache, uint64_t hash)
 {
     return folder_path(path, cache, "cost-%016llx.json", (unsigned long long)hash);
 }
@@ -72,14 +72,14 @@ static json_t *find_table(const struct options *options, char path[FILE_PATH_MAX
     const char *scene = options->operands[0];
     char directory[FILE_PATH_MAX], cache[FILE_PATH_MAX], kept[FILE_PATH_MAX];
     const uint64_t hash = cost_cache_hash(scene, options->overrides, options->override_count);
-    cli_cost_directory(directory, scene);
+    cli_cost_choose_directory(directory, scene);
     json_t *table = json_load_file(folder_path(path, directory, "cost.json"), 0, NULL);
     if (table && is_of(table, hash)) return table;
     const bool other = table != NULL;
     json_decref(table);
     table = NULL;
     if (cost_cache_directory(cache)) {
-        table = json_load_file(cli_cost_table(kept, cache, hash), 0, NULL);
+        table = json_load_file(cli_cost_choose_table(kept, cache, hash), 0, NULL);
     }
     if (table) {
         snprintf(path, FILE_PATH_MAX, "%s", kept);
@@ -107,8 +107,8 @@ bool cli_cost_choose(struct options *options, json_t **table, struct error *erro
     if (!*table) return false;
     const json_t *point = choose(json_object_get(*table, "points"), accuracy, budget);
     if (!point) {
-        return error_set_code(error, EXIT_VERDICT, "%s holds no setting %s%s%s%s", path,
-            accuracy_text ? "within " : "", accuracy_text ? accuracy_text : "",
+        return error_set_code(error, EXIT_VERDICT, "%s holds no setting%s%s%s%s", path,
+            accuracy_text ? " within " : "", accuracy_text ? accuracy_text : "",
             budget_text ? " in " : "", budget_text ? budget_text : "");
     }
     size_t index;

@@ -12,14 +12,17 @@
 enum { BLOCKS = 200 };
 
 /* Mean shear force on the moving plate at speed v, after the gas has become stationary.  Times go
- * with 1/v: the plate moves by the same way. */
-static bool drive(struct figure_job *job, double v, struct stats_mean *mean, struct error *error)
+ * with 1/v: the plate moves by the same way.  With one seed all speeds would have the same run, for
+ * nothing else sets a time. */
+static bool drive(struct figure_job *job, double v, int seed, struct stats_mean *mean,
+                  struct error *error)
 {
     struct lab lab = {0};
     struct lab_wish wish = {.scene = "shear"};
     const double ways = job->quick ? 800 : 3200, settling = ways / 4;
     double series[BLOCKS], before = 0;
     if (job->quick) lab_set(&wish, "quick=true");
+    lab_set(&wish, "seed=%d", seed);
     lab_set(&wish, "obstacles.[1].surface_speed=%g", v);
     lab_set(&wish, "placements.[0].temperature=%g", 0.1 * v * v);
     lab_set(&wish, "dsmc.speed=%g", 2 * v);
@@ -52,7 +55,7 @@ bool bagnold_force(struct figure_job *job, struct error *error)
     chart_curve(&chart, CHART_ERRORS, "DSMC");
     for (int k = 0; done && k < SPEEDS; k++) {
         struct stats_mean mean = {0};
-        done = drive(job, speeds[k], &mean, error);
+        done = drive(job, speeds[k], 1 + k, &mean, error);
         chart_error(&chart, speeds[k], mean.mean, mean.error);
         x[k] = log(speeds[k]);
         y[k] = log(mean.mean);

@@ -73,6 +73,17 @@ static void offer_maps(struct completion *c)
 #undef X
 }
 
+/* What `get` and `expect` know besides keys (teller.c). */
+static void offer_totals(struct completion *c)
+{
+    offer(c, "time");
+    offer(c, "energy");
+#define X(total, ...) offer(c, #total);
+    COUNTERS(X)
+    QUANTITIES(X)
+#undef X
+}
+
 static void offer_commands(struct completion *c)
 {
     for (int verb = 0; verb < COMMAND_COUNT; verb++) offer(c, command_table[verb].name);
@@ -90,10 +101,13 @@ unsigned prompt_complete(const struct prompt *prompt, const char *text, char *mo
     if (!space) offer_commands(&c);
     if (!second) return c.count;
     switch (command_find(verb)) {
-    case COMMAND_set:
     case COMMAND_get:
+        offer_totals(&c);
+        __attribute__((fallthrough));
+    case COMMAND_set:
         for (uint32_t k = 0; k < prompt->keys.count; k++) offer(&c, prompt->keys.texts[k]);
         break;
+    case COMMAND_expect: offer_totals(&c); break;
     case COMMAND_color: offer_colors(&c); break;
     case COMMAND_map:   offer_maps(&c); break;
     case COMMAND_help:  offer_commands(&c); break;

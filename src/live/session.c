@@ -71,6 +71,7 @@ static bool write_start(struct session *session, struct error *error)
     const char *text = session->timeline.text;
     folder_path(path, session->directory, "start.cfg");
     if (!file_save(path, text, strlen(text), error)) return false;
+    folder_remove(session->directory, "start.checkpoint");      /* of an earlier session there */
     if (simulation_count(&session->sim).time == 0) return true;
     struct archive archive;
     archive_begin_save(&archive);

@@ -28,6 +28,7 @@ struct stage {
     const struct scene *scene;
     uint64_t look;              /* counts changes that need another film */
     struct stage_frame *newest;
+    struct stage_frame *spare;  /* nobody holds it; fresh memory for each picture would cost */
     uint64_t number;
     char trouble[sizeof ((struct error *)0)->text];
 
@@ -37,11 +38,38 @@ struct stage {
     double   film_size[2];
 };
 
-static void drop(struct stage_frame *frame)
+static void destroy_frame(struct stage_frame *frame)
 {
-    if (!frame || --frame->holders > 0) return;
+    if (!frame) return;
     image_free(&frame->image);
     free(frame);
+}
+
+/* With the lock held. */
+static void drop(struct stage *stage, struct stage_frame *frame)
+{
+    if (!frame || --frame->holders > 0) return;
+    if (!stage->spare) stage->spare = frame;
+    else destroy_frame(frame);
+}
+
+/* A frame with an image of this size, whatever it shows. */
+static struct stage_frame *take_frame(struct stage *stage, const struct image *size,
+                                      struct error *error)
+{
+    pthread_mutex_lock(&stage->lock);
+    struct stage_frame *frame = stage->spare;
+    stage->spare = NULL;
+    pthread_mutex_unlock(&stage->lock);
+    if (frame && frame->image.width == size->width && frame->image.height == size->height) {
+        return frame;
+    }
+    destroy_frame(frame);
+    frame = calloc(1, sizeof *frame);
+    if (!frame) error_set(error, "not enough memory for a picture");
+    else if (image_create(&frame->image, size->width, size->height, error)) return frame;
+    free(frame);
+    return NULL;
 }
 
 /* The film of the view in the mailbox; opened anew for another size or map. */
@@ -70,21 +98,15 @@ static bool ready_film(struct stage *stage, struct error *error)
 /* Draws the mailbox.  The scene cannot be exchanged meanwhile. */
 static struct stage_frame *draw(struct stage *stage, struct error *error)
 {
-    struct stage_frame *frame = calloc(1, sizeof *frame);
-    if (!frame) {
-        error_set(error, "not enough memory for a picture");
+    if (!ready_film(stage, error)
+        || !film_draw(&stage->film, &stage->mailbox, stage->status.counters.steps, 0, error)) {
         return NULL;
     }
+    struct stage_frame *frame = take_frame(stage, &stage->film.image, error);
+    if (!frame) return NULL;
     frame->holders = 1;
     frame->status = stage->status;
-    const bool done = ready_film(stage, error)
-        && film_draw(&stage->film, &stage->mailbox, stage->status.counters.steps, 0, error)
-        && image_create(&frame->image, stage->film.image.width, stage->film.image.height, error);
-    if (!done) {
-        drop(frame);
-        return NULL;
-    }
-    /* The picture changes hands, and the film gets a fresh one. */
+    /* The picture changes hands, and the film gets another one to draw over. */
     const struct image drawn = stage->film.image;
     stage->film.image = frame->image;
     frame->image = drawn;
@@ -111,7 +133,7 @@ static void *work(void *context)
         stage->mailed = false;
         if (frame) {
             frame->number = ++stage->number;
-            drop(stage->newest);
+            drop(stage, stage->newest);
             stage->newest = frame;
         } else {
             snprintf(stage->trouble, sizeof stage->trouble, "%s", error.text);
@@ -157,7 +179,8 @@ void stage_destroy(struct stage *stage)
     if (!stage) return;
     stage_dismiss(stage);
     if (stage->started) pthread_join(stage->thread, NULL);
-    drop(stage->newest);
+    destroy_frame(stage->newest);
+    destroy_frame(stage->spare);
     grains_free(&stage->mailbox);
     pthread_cond_destroy(&stage->changed);
     pthread_mutex_destroy(&stage->lock);
@@ -220,7 +243,7 @@ const struct stage_frame *stage_await(struct stage *stage, uint64_t after, doubl
 void stage_release(struct stage *stage, const struct stage_frame *frame)
 {
     pthread_mutex_lock(&stage->lock);
-    drop((struct stage_frame *)(uintptr_t)frame);
+    drop(stage, (struct stage_frame *)(uintptr_t)frame);
     pthread_mutex_unlock(&stage->lock);
 }
 

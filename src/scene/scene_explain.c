@@ -247,7 +247,12 @@ bool scene_explain(const struct scene *scene, uint32_t index, struct scene_reaso
     reason->effect = (effects_t)1 << index;
     const bool derived = derive(scene, index, reason);
     reason->on = (scene->effects & reason->effect) != 0;
-    if (reason->on && !derived) {
+    struct scene_reason cause = {0};
+    const effects_t carried = EFFECT_ROTATION | EFFECT_STATIC_FRICTION;
+    if (reason->on && !derived && reason->effect & carried && friction(scene, &cause)) {
+        snprintf(reason->why, sizeof reason->why, "%.150s, as '%.40s' carries it", cause.why,
+                 scene->model);
+    } else if (reason->on && !derived) {
         snprintf(reason->why, sizeof reason->why, "settings of the model '%.60s' ask for it",
                  scene->model);
     } else if (!reason->on && derived) {

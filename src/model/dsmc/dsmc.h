@@ -113,6 +113,7 @@ struct dsmc {
 
     uint32_t full;              /* hsmc: grains that fill a cell; 0: no limit */
     uint16_t *load;             /* hsmc: grains in each cell while they move */
+    uint32_t *shares;           /* hsmc: [thread + 1] first grain of each thread's share */
     bool     unsorted;          /* hsmc: some grain has changed its cell in this step */
 
     struct source_cursor *cursors;

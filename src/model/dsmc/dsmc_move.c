@@ -341,14 +341,14 @@ static void do_share(struct dsmc *dsmc, const struct dsmc_flight *flight, uint32
 {
     const uint32_t t = (uint32_t)omp_get_thread_num(), team = (uint32_t)omp_get_num_threads();
     const effects_t flows = EFFECT_OUTFLOW | EFFECT_SCREEN | EFFECT_INFLOW;
-    const bool waits = dsmc->full || dsmc->effects & flows;
+    const bool flow = dsmc->effects & flows;
     const uint32_t from = share_block(dsmc, t, team), to = share_block(dsmc, t + 1, team);
     uint32_t *places = dsmc->places + (size_t)t * dsmc->cells;
     uint32_t first = dsmc->first[dsmc_collide_cell(dsmc, from)];
     uint32_t last = dsmc->first[dsmc_collide_cell(dsmc, to)];
     struct dsmc_sums sums = {
         .impacts = dsmc->impacts ? dsmc->impacts + (size_t)t * dsmc->tally.impact.bins : NULL};
-    if (dsmc->full) dsmc_heap_load(dsmc, t, team);
+    if (dsmc->full) dsmc_heap_load(dsmc, t, team, from, to);
     else memset(places, 0, dsmc->cells * sizeof *places);
     do_blocks(dsmc, flight, from, to, places, &sums);
     dsmc->sums[t] = sums;
@@ -358,9 +358,9 @@ static void do_share(struct dsmc *dsmc, const struct dsmc_flight *flight, uint32
     do_alone(dsmc);
 #pragma omp barrier
     if (dsmc->full && !dsmc->unsorted) return;          /* a heap at rest keeps its order */
-    if (dsmc->full && team == 1 && !(dsmc->effects & flows)) {
+    if (dsmc->full && team == 1 && !flow) {
         for (uint32_t c = 0; c < dsmc->cells; c++) places[c] = dsmc->load[c];
-    } else if (waits) {                                 /* the counts are of other grains */
+    } else if (flow) {                                  /* the counts are of other grains */
         memset(places, 0, dsmc->cells * sizeof *places);
         first = (uint32_t)((uint64_t)dsmc->count * t / team);
         last = (uint32_t)((uint64_t)dsmc->count * (t + 1) / team);

@@ -26,6 +26,8 @@ static const struct key keys[] = {
      "greatest speed to expect, for choosing the time step; estimated when absent"},
     {"weight", KEY_COUNT, AT(weight), "1", 1, 1000, "1", NULL,
      "simulated particles for each grain: more of them, more accurate dissipation"},
+    {"restitution", KEY_REAL, AT(restitution), "nan", 0, 1, "1", NULL,
+     "of grains for which the scene has stiffness and damping instead; absent: 0.8"},
     {"tangential", KEY_REAL, AT(tangential), "0", -1, 1, "1", NULL,
      "beta0: greatest tangential restitution of grains with friction, 1: rough and elastic"},
     {"reach", KEY_RANGE, AT(reach), "2", 1, 16, "1", NULL,
@@ -66,7 +68,8 @@ static double cell_to_choose(const struct scene *scene, const struct dsmc_settin
 
 struct dsmc_settings dsmc_settings_completed(const struct scene *scene)
 {
-    struct dsmc_settings s = {.cell = NAN, .dt = NAN, .speed = NAN, .weight = 1, .reach = {2, 2}};
+    struct dsmc_settings s = {.cell = NAN, .dt = NAN, .speed = NAN, .weight = 1, .restitution = NAN,
+                              .reach = {2, 2}};
     const struct dsmc_settings *given = scene_settings(scene, "dsmc");
     if (given) s = *given;
     if (scene->shear_rate != 0 && s.method == DSMC_DENSE) s.method = DSMC_PLAIN;
@@ -100,12 +103,16 @@ static void judge_heap(struct scene *scene, const struct dsmc_settings *settings
                        struct findings *findings)
 {
     const double *g = scene->gravity;
-    if (settings->method == DSMC_HSMC) {
-        if (fabs(g[0]) <= 0.5 * fabs(g[1])) return;
+    if (settings->method == DSMC_HSMC && fabs(g[0]) > 0.5 * fabs(g[1])) {
         findings_tell(findings, scene, FINDING_WARNING, "dsmc.method", "gravity = (%g, %g): hsmc "
             "lets grains rest on cells below them along y only; turn the scene", g[0], g[1]);
-        return;
     }
+    if (settings->method == DSMC_HSMC && scene->effects & EFFECT_GATES) {
+        findings_tell(findings, scene, FINDING_WARNING, "dsmc.method", "where a gate opens below "
+            "grains at rest, hsmc lets them go row by row, as there is room below: a block falls "
+            "half as far as freely, and a neck lets out less; md and ed know better");
+    }
+    if (settings->method == DSMC_HSMC) return;
     for (uint32_t s = 0; s < scene->source_count; s++) {
         if (scene->sources[s].above == 0) continue;
         char place[64];
@@ -152,16 +159,19 @@ static void judge_cell(struct scene *scene, const struct dsmc_settings *settings
     }
 }
 
-static void fill_restitution(struct scene *scene, struct findings *findings)
+static void fill_restitution(struct scene *scene, const struct dsmc_settings *settings,
+                             struct findings *findings)
 {
     for (uint32_t k = 0; k < scene->species_count; k++) {
         struct species *species = &scene->species[k];
+        if (!isnan(species->restitution)) continue;
+        species->restitution = settings->restitution;
         if (!isnan(species->restitution)) continue;
         char place[64];
         snprintf(place, sizeof place, "grains.[%u]", k);
         findings_tell(findings, scene, FINDING_WARNING, place, "dsmc needs a restitution, and "
             "stiffness and damping do not give one that holds for every speed; %g is taken: set "
-            "%s.restitution instead", restitution_default, place);
+            "dsmc.restitution", restitution_default);
         species->restitution = restitution_default;
     }
 }
@@ -205,7 +215,7 @@ void dsmc_settings_resolve(struct scene *scene, struct findings *findings)
         settings->cell = s.cell;
         settings->dt = s.dt;
     }
-    fill_restitution(scene, findings);
+    fill_restitution(scene, &s, findings);
     if (scene->effects & EFFECT_FRICTION) scene->effects |= EFFECT_ROTATION;
     judge_cell(scene, &s, findings);
     judge_heap(scene, &s, findings);

@@ -17,6 +17,7 @@ struct dsmc_settings {
     double   dt;                /* NAN: chosen */
     double   speed;             /* NAN: estimated */
     uint32_t weight;            /* simulated particles for each grain */
+    double   restitution;       /* of species that have none of their own; NAN: 0.8 */
     double   tangential;        /* beta0 of grains with friction */
     double   reach[2];          /* hsmc: columns within which a grain can roll down */
 };

@@ -48,12 +48,12 @@ static struct ed_pair mixed(const struct species *a, const struct species *b,
     return (struct ed_pair){r, sqrt(a->friction * b->friction), settings->tangential};
 }
 
-/* Greatest speed, in g t_c, that friction gives back under `elastic = "rest"`.  A grain that
- * carries N others and is hit with v has N g / v contacts in a unit of time, whatever the law: a
- * bed that hardly stirs costs many events, one that stirs creeps about as fast as it stirs.  With
- * ten, beds up to ten grains deep rest at about one contact in t_c.  More lets sand that flows
- * slip without loss: without this bound the small hourglass ran out 5 % too soon and went on
- * sloshing, with 16 by 3 %, with 4 by 1 % and at six times the events. */
+/* Greatest speed, in g t_c, that friction gives back (`elastic = "rest"`).  A grain that carries
+ * N others and is hit with v has N g / v contacts in a unit of time, whatever the law: a bed that
+ * hardly stirs costs many events, one that stirs creeps about as fast as it stirs.  With ten, beds
+ * up to ten grains deep rest at about one contact in t_c.  More lets sand that flows slip without
+ * loss: without a bound the small hourglass ran out 5 % sooner than with 1, with 16 by 3 %, with 4
+ * by 1 %, at a fourteenth, a seventh and a third of the cost; and its heap went on sloshing. */
 static const double rest_speed = 10;
 
 bool ed_law_create(struct ed_law *law, const struct scene *scene,

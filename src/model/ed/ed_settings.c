@@ -131,8 +131,8 @@ static void complete_restitution(struct scene *scene, const struct ed_settings *
     }
 }
 
-/* Above this share of a grain's fall through itself, sqrt(d/g), the cut-off changes how sand flows:
- * at 0.1 the small hourglass ran 15 % slower than at 0.01 (docs/hard-discs.md). */
+/* Cut-off as a share of a grain's fall through itself, sqrt(d/g).  Beds at rest stir at up to
+ * 10 g t_c (ed_law.c), which lifts a grain by 50 share^2 d: by a twentieth of d at this one. */
 static const double cut_off_share_max = 0.03;
 
 static void warn_of_cut_off(const struct scene *scene, const struct ed_settings *settings,
@@ -141,10 +141,9 @@ static void warn_of_cut_off(const struct scene *scene, const struct ed_settings 
     const double g = hypot(scene->gravity[0], scene->gravity[1]), d = 2 * scene->radius_mean;
     const double fall = g > 0 ? sqrt(d / g) : INFINITY;
     if (!(settings->t_c > cut_off_share_max * fall)) return;
-    findings_tell(findings, scene, FINDING_WARNING, "ed.t_c",
-                  "ed.t_c = %.3g is %.2g of the time in "
-        "which a grain falls through its diameter: beds at rest stir, flows keep energy that "
-        "collisions should take; use at most %.2g, or delete the line and sandreel chooses",
+    findings_tell(findings, scene, FINDING_WARNING, "ed.t_c", "ed.t_c = %.3g is %.2g of the time "
+        "in which a grain falls through its diameter, so that grains at rest on each other stir "
+        "and heaps creep; use at most %.2g, or delete the line and sandreel chooses",
         settings->t_c, settings->t_c / fall, cut_off_share_max * fall);
 }
 

@@ -34,8 +34,12 @@ FORCE_INLINE int64_t bits_of(double x)
 FORCE_INLINE void move_verlet(struct grain *g, struct half *h, double ax, double ay, double at,
                               double dt, unsigned form)
 {
-    const double half = 0.5 * dt, kick = g->fresh ? half : dt;
-    g->fresh = 0;
+    const double half = 0.5 * dt;
+    double kick = dt;
+    if (__builtin_expect(g->fresh, 0)) {
+        g->fresh = 0;
+        kick = half;
+    }
     h->hx += kick * ax;
     h->hy += kick * ay;
     g->ux = h->hx + half * ax;
