@@ -98,8 +98,8 @@ static bool name_scene(struct run *run)
         || error_set(run->error, "%s: cannot name this file: %s", path, strerror(errno));
 }
 
-/* For a run that could not begin.  Where it has left other files, as on a full disk, the scene stays
- * as the mark by which `--resume` knows that they are its own. */
+/* For a run that could not begin.  Where it has left other files, as on a full disk, the scene
+ * stays as the mark by which `--resume` knows that they are its own. */
 static void forget_scene(const struct run *run)
 {
     static const char mark[] = "scene.cfg.new";
