@@ -21,7 +21,7 @@
 
 static const uint64_t seeds_default = 3;
 static const double seconds_default = 10;       /* of one run */
-static const double error_least = 1e-9;         /* drawn; rounding */
+static const double error_least = 1e-6;         /* drawn; what is smaller stands there */
 static const double told_accuracies[] = {0.1, 0.03, 0.01, 0.003, 0.001};
 
 static void tell(void *context, const struct cost_point *point)

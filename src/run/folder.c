@@ -32,16 +32,22 @@ void folder_choose(char path[FILE_PATH_MAX], const char *name, const char *model
 
 static const char *const folders[] = {"frames", "maps", "dump", "checkpoint"};
 
-static bool is_empty(const char *directory)
+bool folder_holds_only(const char *directory, const char *name)
 {
     DIR *list = opendir(directory);
     if (!list) return true;
-    bool empty = true;
-    for (struct dirent *entry; empty && (entry = readdir(list));) {
-        empty = strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0;
+    bool only = true;
+    for (struct dirent *entry; only && (entry = readdir(list));) {
+        only = strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0
+            || strcmp(entry->d_name, name) == 0;
     }
     closedir(list);
-    return empty;
+    return only;
+}
+
+static bool is_empty(const char *directory)
+{
+    return folder_holds_only(directory, "");
 }
 
 /* Only names that a run writes: NAME.ENDING with an ending of ours. */

@@ -25,6 +25,9 @@ bool folder_claim(const char *directory, bool force, struct error *error);
  * directory holds neither a run nor the beginning of one. */
 bool folder_reclaim(const char *directory, struct error *error);
 
+/* Is there nothing in the directory but `name`, or not even that? */
+bool folder_holds_only(const char *directory, const char *name);
+
 /* Removes the files of a run from one of its folders, and the folder if nothing is left. */
 void folder_clear(const char *directory, const char *name);
 

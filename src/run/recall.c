@@ -20,7 +20,8 @@ json_t *recall_manifest(const char *run, struct error *error)
     json_error_t cause;
     json_t *root = json_loadb(text, size, 0, &cause);
     free(text);
-    if (!root) error_set(error, "%s:%d: not a manifest: %s", path, cause.line, cause.text);
+    if (!root && !*cause.text) error_set(error, "%s: not enough memory to read it", path);
+    else if (!root) error_set(error, "%s:%d: not a manifest: %s", path, cause.line, cause.text);
     return root;
 }
 

@@ -98,6 +98,16 @@ static bool name_scene(struct run *run)
         || error_set(run->error, "%s: cannot name this file: %s", path, strerror(errno));
 }
 
+/* For a run that could not begin.  Where it has left other files, as on a full disk, the scene
+ * stays as the mark by which `--resume` knows that they are its own. */
+static void forget_scene(const struct run *run)
+{
+    static const char mark[] = "scene.cfg.new";
+    char path[FILE_PATH_MAX];
+    if (file_exists(folder_path(path, run->directory, "scene.cfg"))
+        || folder_holds_only(run->directory, mark)) folder_remove(run->directory, mark);
+}
+
 /* Everything that a continued run must know beside the model's state. */
 static void archive_run(struct run *run, struct archive *archive)
 {
@@ -352,7 +362,7 @@ static bool carry_out(struct run *run, struct run_result *result)
                      &run->parts, run->error)
         || (run->resumes && !load_checkpoint(run))
         || !save_manifest(run, "running", NULL, run->error) || !name_scene(run)) {
-        folder_remove(run->directory, "scene.cfg.new");
+        forget_scene(run);
         return false;
     }
     run->time_start = simulation_count(&run->sim).time;

@@ -57,16 +57,17 @@ static void resolve(struct setup *setup)
 }
 
 /* A run's scene keeps the name of the scene it was made from, not that of its file scene.cfg. */
-static void keep_name(struct setup *setup, const char *run)
+static bool keep_name(struct setup *setup, const char *run, struct error *error)
 {
-    struct error ignored;
-    json_t *manifest = recall_manifest(run, &ignored);
+    json_t *manifest = recall_manifest(run, error);
+    if (!manifest) return false;
     const char *name = json_string_value(json_object_get(manifest, "scene"));
     for (uint32_t p = 0; name && p < setup->scene->phase_count; p++) {
         struct scene *scene = setup->scene->phases[p];
         snprintf(scene->name, sizeof scene->name, "%s", name);
     }
     json_decref(manifest);
+    return true;
 }
 
 bool setup_load(struct setup *setup, const struct setup_request *request, struct error *error)
@@ -88,7 +89,10 @@ bool setup_load(struct setup *setup, const struct setup_request *request, struct
         wanted.path = inside;
     }
     setup->scene = scene_load(&wanted, setup->findings);
-    if (setup->scene && is_run) keep_name(setup, request->path);
+    if (!setup->scene && setup->findings->errors == 0) {
+        return error_set(error, "%s: not enough memory to read this scene", request->path);
+    }
+    if (setup->scene && is_run && !keep_name(setup, request->path, error)) return false;
     if (setup->scene) resolve(setup);
     if (setup->scene && setup->findings->errors == 0) return true;
     return error_set_code(error, EXIT_SCENE, "%s: %u error%s, %u warning%s", request->path,

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <string.h>
 
 #define AT(field) offsetof(struct dsmc_settings, field)
 
@@ -99,6 +100,15 @@ static bool can_pile_up(const struct scene *scene)
     return false;
 }
 
+/* Every phase is judged; what holds for all of them is told once. */
+static void warn_once(struct findings *findings, const struct scene *scene, const char *text)
+{
+    for (uint32_t k = 0; k < findings->count && k < FINDINGS_MAX; k++) {
+        if (strstr(findings->list[k].text, text)) return;
+    }
+    findings_tell(findings, scene, FINDING_WARNING, "dsmc.method", "%s", text);
+}
+
 static void judge_heap(struct scene *scene, const struct dsmc_settings *settings,
                        struct findings *findings)
 {
@@ -108,9 +118,9 @@ static void judge_heap(struct scene *scene, const struct dsmc_settings *settings
             "lets grains rest on cells below them along y only; turn the scene", g[0], g[1]);
     }
     if (settings->method == DSMC_HSMC && scene->effects & EFFECT_GATES) {
-        findings_tell(findings, scene, FINDING_WARNING, "dsmc.method", "where a gate opens below "
-            "grains at rest, hsmc lets them go row by row, as there is room below: a block falls "
-            "half as far as freely, and a neck lets out less; md and ed know better");
+        warn_once(findings, scene, "where a gate opens below grains at rest, hsmc lets them go row "
+            "by row, as there is room below: a block falls half as far as freely, and a neck lets "
+            "out less; md and ed know better");
     }
     if (settings->method == DSMC_HSMC) return;
     for (uint32_t s = 0; s < scene->source_count; s++) {
@@ -121,9 +131,9 @@ static void judge_heap(struct scene *scene, const struct dsmc_settings *settings
             "no heap lifts this source; set dsmc.method = \"hsmc\", or delete 'above'");
     }
     if (!can_pile_up(scene) || !(scene->effects & EFFECT_DISSIPATION)) return;
-    findings_tell(findings, scene, FINDING_WARNING, "dsmc.method", "grains that lose energy fall "
-        "onto walls here, and nothing keeps points apart: once they are slow the density at the "
-        "bottom runs away; use dsmc.method = \"hsmc\", or md, where the grains come to rest");
+    warn_once(findings, scene, "grains that lose energy fall onto walls here, and nothing keeps "
+        "points apart: once they are slow the density at the bottom runs away; use dsmc.method = "
+        "\"hsmc\", or md, where the grains come to rest");
 }
 
 static void judge_cell(struct scene *scene, const struct dsmc_settings *settings,
