@@ -44,37 +44,50 @@ static void print_row(const char *name, const struct scene *scene)
     printf(" %s\n", scene ? scene->title : "(cannot be read)");
 }
 
-int cli_scenes(const struct options *options)
+/* The scenes proper, or the hard cases: a row of each, or an entry of `list` if that is given. */
+static void tell_scenes(bool hard, json_t *list)
 {
-    const bool json = options_given(options, OPTION_json);
     const struct key_group *groups[MODEL_MAX];
     const uint32_t group_count = model_settings(groups);
     struct findings *findings = calloc(1, sizeof *findings);
-    json_t *list = json_array();
-    if (!json) {
-        printf("%-18s", "scene");
-        for (const struct model *const *m = model_list; *m; m++) printf(" %-5s", (*m)->name);
-        printf("\n");
-    }
     for (const struct asset *asset = asset_list; findings && asset->name; asset++) {
         char name[KEY_TEXT_MAX];
         if (!scene_name(asset, name, sizeof name)) continue;
+        if (hard != (strncmp(name, "hard/", strlen("hard/")) == 0)) continue;
         const struct scene_request request = {.path = name, .groups = groups,
                                               .group_count = group_count, .place = false};
         *findings = (struct findings){0};
         struct scene *scene = scene_load(&request, findings);
-        if (json) json_array_append_new(list, describe(name, scene));
+        if (list) json_array_append_new(list, describe(name, scene));
         else print_row(name, scene);
         if (scene) scene_free(scene);
     }
     free(findings);
-    if (json) {
-        json_dumpf(list, stdout, JSON_INDENT(4));
-        printf("\n");
-    } else {
-        printf("\n* its own model, x can run it too, - lacks an effect (`sandreel check SCENE "
-               "--model NAME` says which)\n`sandreel run SCENE --quick` runs the small form\n");
-    }
+}
+
+static void tell_json(void)
+{
+    json_t *list = json_array();
+    tell_scenes(false, list);
+    tell_scenes(true, list);
+    json_dumpf(list, stdout, JSON_INDENT(4));
+    printf("\n");
     json_decref(list);
+}
+
+int cli_scenes(const struct options *options)
+{
+    if (options_given(options, OPTION_json)) {
+        tell_json();
+        return EXIT_DONE;
+    }
+    printf("%-18s", "scene");
+    for (const struct model *const *m = model_list; *m; m++) printf(" %-5s", (*m)->name);
+    printf("\n");
+    tell_scenes(false, NULL);
+    printf("\nhard cases (`sandreel stress` runs them all):\n");
+    tell_scenes(true, NULL);
+    printf("\n* its own model, x can run it too, - lacks an effect (`sandreel check SCENE "
+           "--model NAME` says which)\n`sandreel run SCENE --quick` runs the small form\n");
     return EXIT_DONE;
 }
