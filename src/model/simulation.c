@@ -18,7 +18,7 @@ static bool refuse_effects(const struct model *model, const struct scene *scene,
     for (uint32_t p = 0; p < scene->phase_entry_count && !model->push; p++) {
         if (scene->phase_entries[p].push.count == 0) continue;
         return error_set_code(error, EXIT_SCENE, "%s: the grains of model '%s' cannot be "
-            "pushed, as they have no velocity of their own; take the push out, or use another model",
+            "pushed, as they have no velocity of their own; take the push out or change the model",
             scene->path, model->name);
     }
     return true;
