@@ -89,7 +89,7 @@ static const struct example examples[] = {
      "walls = ({ shape = \"segment\"; points = ((-9.0, 1.0), (3.0, 1.0)); });"
      "sources = ({ position = (-4.0, 14.0); width = 4.0; rate = 2.0; });"
      "measure = { collision_counts = true; stress = true; cell = 3.0; };", 8, true, true, NULL},
-    {"many grains for two threads", "until = 0.5; box = [0.0, 0.0, 75.0, 75.0];" PERIODIC GRAINS
+    {"many grains for two threads", "until = 0.5; box = [0.0, 0.0, 96.0, 96.0];" PERIODIC GRAINS
      "placements = ({ kind = \"square\"; spacing = 1.5; temperature = 16.0; "
      "});", 0.5, false, false, NULL},
     /* The floor is narrow, so that the heap soon lifts the source and grains fall off its sides. */
