@@ -46,8 +46,8 @@ static const double cells_per_step = 0.1;       /* that the fastest grain goes *
 static const double cells_per_step_high = 0.5;  /* more than this is told */
 
 /* Grains that a heap of hsmc carries off in sqrt(d/g).  On each of two flanks one layer of cells
- * goes, two grains abreast a diameter long, at one diameter in that time at most: four.  The heap of
- * scenes/heap.cfg, once it is as high as its source, takes 3.2. */
+ * goes, two grains abreast a diameter long, at one diameter in that time at most: four.  The heap
+ * of scenes/heap.cfg, once it is as high as its source, takes 3.2. */
 static const double shed_max = 3;
 
 static double box_width(const struct scene *s) { return s->box[2] - s->box[0]; }
@@ -125,8 +125,8 @@ static void judge_pour(struct scene *scene, struct findings *findings)
         if (source->kind != SOURCE_POINT || source->rate <= shed_max * fall) continue;
         char place[64];
         snprintf(place, sizeof place, "sources.[%u].rate", k);
-        findings_tell(findings, scene, FINDING_WARNING, place, "%g grains a time unit: of a heap of "
-            "hsmc only the topmost cells roll, and carry off %.3g; it grows steep, up to the "
+        findings_tell(findings, scene, FINDING_WARNING, place, "%g grains a time unit: of a heap "
+            "of hsmc only the topmost cells roll, and carry off %.3g; it grows steep, up to the "
             "source, which then waits; use at most that and a longer run, or md", source->rate,
             shed_max * fall);
     }
