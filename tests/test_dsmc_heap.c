@@ -269,7 +269,8 @@ static double let_in(double rate, bool *warned)
 }
 
 /* With the slope of 0.46 a heap of 600 is sqrt(0.46 600) = 17 high.  Poured from 20, all have room
- * if there is time to roll, and if not, the steep heap's own grains block the source: of ten a time unit four at most can roll away (dsmc_settings.c).  352 of 600 were seen. */
+ * if there is time to roll.  If there is not, their own steep heap blocks the source: of ten a time
+ * unit four at most can roll away (dsmc_settings.c).  352 of 600 were seen. */
 static void test_what_is_poured_faster_than_it_rolls_blocks_its_source(void **unused)
 {
     (void)unused;
