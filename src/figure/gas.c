@@ -28,6 +28,7 @@ void gas_wish(struct gas *gas, struct lab_wish *wish)
     *wish = (struct lab_wish){.scene = "cooling"};
     lab_set(wish, "model=%s", models[gas->kind]);
     if (gas->kind == GAS_HSMC) lab_set(wish, "dsmc.method=hsmc");
+    if (gas->weight > 1) lab_set(wish, "dsmc.weight=%u", gas->weight);
     if (gas->kind == GAS_ED) lab_set(wish, "ed.t_c=%g", gas->t_c);
     lab_set(wish, "box=[0,0,%.12g,%.12g]", gas->length, gas->length);
     lab_set(wish, "placements.[0].count=%u", count);

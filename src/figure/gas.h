@@ -15,6 +15,7 @@ struct gas {
     enum gas_kind kind;
     uint32_t side;              /* side^2 grains on a square lattice; 0: `count` at random */
     uint32_t count;
+    uint32_t weight;            /* of DSMC and HSMC: simulated grains a disc; 0: one */
     double   fraction, restitution;
     double   t_c;               /* of ED */
     double   equilibrate;       /* collisions of a grain before the cooling */

@@ -14,7 +14,8 @@
 
 static const double at_rest = 0.5;              /* of sqrt(g d): what falls is faster */
 
-/* The paper's heap, or a small one: N grains, and 500 time units to settle. */
+/* The paper's heap, or a small one: N grains, one a time unit.  The last ones roll down a flank for
+ * about ten time units a diameter of the heap's height (400 from 38 diameters). */
 struct sand { uint32_t count; double half, height, until; };
 
 static struct sand sand_of(const struct figure_job *job)
@@ -22,7 +23,7 @@ static struct sand sand_of(const struct figure_job *job)
     /* A flank of slope 0.55 with a tail of 15 d: half the base is about twice the height, and
      * with 2 grains a cell column of 2 d, 2 N = base * height. */
     if (job->quick) return (struct sand){3000, 120, 50, 3500};
-    return (struct sand){30500, 320, 150, 31000};
+    return (struct sand){30500, 320, 150, 32500};
 }
 
 static void sand_wish(const struct sand *sand, struct lab_wish *wish)

@@ -25,7 +25,7 @@ static const double way_max = 1e4;
  * overlap takes 1e4 free falls through a grain to grow to 1e-9. */
 static const double noise_share = 1e-15, noise_at_rest = 1e-13;
 
-/* Time counts as stuck if ED_STUCK_EVENTS bring it on by less than this share of a grain's diameter
+/* Time counts as stuck if ed_stuck_events bring it on by less than this share of a grain's diameter
  * over its speed. */
 static const double stuck_share = 1e-10;
 
@@ -135,7 +135,7 @@ static void sort_in_space(struct ed *ed)
     }
 }
 
-/* The time in which ED_STUCK_EVENTS are due at the latest. */
+/* The time in which ed_stuck_events are due at the latest. */
 static double stuck_step(const struct ed *ed)
 {
     const struct ed_clock *clock = &ed->clock;
@@ -144,7 +144,7 @@ static double stuck_step(const struct ed *ed)
     if (clock->pace == 0 || ed->count == 0) return own;
     double rate = events_most * clock->pace / d;
     if (ed->law.t_c > 0) rate = fmax(rate, contacts_most / ed->law.t_c);
-    return fmax(own, ED_STUCK_EVENTS / (rate * ed->count));
+    return fmax(own, (double)ed_stuck_events(ed->count) / (rate * ed->count));
 }
 
 /* The speeds and times that thresholds are measured by. */

@@ -423,14 +423,14 @@ FORCE_INLINE void fetch_bucket(const struct ed *ed)
 }
 
 /* Is `now` still moving on?  Counts events against a mark on the clock. */
-FORCE_INLINE bool is_stuck(struct ed_clock *clock)
+FORCE_INLINE bool is_stuck(struct ed_clock *clock, uint64_t limit)
 {
     if (clock->now > clock->stuck_mark) {
         clock->stuck_mark = clock->now + clock->stuck_step;
         clock->stuck_events = 0;
         return false;
     }
-    return ++clock->stuck_events > ED_STUCK_EVENTS;
+    return ++clock->stuck_events > limit;
 }
 
 FORCE_INLINE enum ed_stop run(struct ed *ed, double limit, uint64_t *budget, int with)
@@ -438,6 +438,7 @@ FORCE_INLINE enum ed_stop run(struct ed *ed, double limit, uint64_t *budget, int
     struct ed_queue *q = &ed->queue;
     struct ed_clock *clock = &ed->clock;
     const uint64_t epoch_events = 8ull * ed->count + 4096;
+    const uint64_t stuck_events = ed_stuck_events(ed->count);
     for (;;) {
         struct ed_due first;
         bool from_heap, rebuild = false;
@@ -471,7 +472,7 @@ FORCE_INLINE enum ed_stop run(struct ed *ed, double limit, uint64_t *budget, int
         if (q->pushed > CROWDED) {
             ed_queue_rebuild(q, ed->events, ed->count, clock->now, 0.125 / q->per_time);
         }
-        if (is_stuck(clock)) return ED_STUCK;
+        if (is_stuck(clock, stuck_events)) return ED_STUCK;
         if (clock->epoch_events > epoch_events || clock->now > clock->epoch_end) return ED_EPOCH;
     }
 }
