@@ -65,6 +65,7 @@ struct link { uint32_t i, j; };
 enum {
     LINK_IMAGE_SHIFT = 27,                      /* 4 bits: which periodic image */
     LINK_INDEX = (1 << LINK_IMAGE_SHIFT) - 1,   /* at most 134 million grains */
+    LINK_IMAGE = 15 << LINK_IMAGE_SHIFT,
     LINK_IMAGES = 9,
     LINKS_AHEAD = 32            /* whose partner is fetched into the cache beforehand */
 };

@@ -45,13 +45,14 @@ static void turn(struct md *md, uint32_t k, bool touches, struct strip_sums *sum
     md->collisions[j]++;
 }
 
+/* Which of the links touch.  Most do not, or not yet: nothing is stored for them that lasts. */
 FORCE_INLINE void find(struct md *md, uint32_t first, uint32_t last, struct md_window *w,
                        struct strip_sums *sums, unsigned kernel, bool periodic)
 {
     const struct grain *const grains = md->grains;
     const struct trait *const traits = md->traits;
-    const double reach_one = 2 * md->radius_one;
     const struct link *const links = md->links;
+    const double reach_one = 2 * md->radius_one;
     uint32_t n = 0;
     for (uint32_t k = first; k < last; k++) {
         const struct link link = links[k];
@@ -61,22 +62,17 @@ FORCE_INLINE void find(struct md *md, uint32_t first, uint32_t last, struct md_w
         const uint32_t j = link.j & LINK_INDEX;
         const struct grain *a = &grains[link.i], *b = &grains[j];
         double dx = a->x - b->x, dy = a->y - b->y;
-        if (periodic) {
+        if (periodic && __builtin_expect(link.j & LINK_IMAGE, 0)) {
             const uint32_t image = link.j >> LINK_IMAGE_SHIFT & 15;
             dx -= md->image_x[image];
             dy -= md->image_y[image];
         }
         const double reach = kernel & MASSES ? traits[link.i].radius + traits[j].radius
                                              : reach_one;
-        const double distance2 = dx * dx + dy * dy;
-        const bool touches = distance2 < reach * reach;
+        const bool touches = dx * dx + dy * dy < reach * reach;
         w->link[n] = k;
-        w->i[n] = link.i;
-        w->j[n] = j;
         w->dx[n] = dx;
         w->dy[n] = dy;
-        if (kernel & MASSES) w->reach[n] = reach;
-        w->distance2[n] = distance2;
         n += touches;
         if (__builtin_expect(touches != (link.j >= LINK_TOUCHES), 0)) turn(md, k, touches, sums);
     }
@@ -85,16 +81,22 @@ FORCE_INLINE void find(struct md *md, uint32_t first, uint32_t last, struct md_w
 
 FORCE_INLINE void gather(const struct md *md, struct md_window *w, unsigned kernel)
 {
+    const bool differ = kernel & (MASSES | TANGENTIAL);
     for (uint32_t k = 0; k < w->count; k++) {
-        const uint32_t i = w->i[k], j = w->j[k];
+        const uint32_t link = w->link[k];
+        const uint32_t i = md->links[link].i, j = md->links[link].j & LINK_INDEX;
         const struct grain *a = &md->grains[i], *b = &md->grains[j];
-        const bool differ = kernel & (MASSES | TANGENTIAL);
         const struct trait *s = differ ? &md->traits[i] : NULL, *t = differ ? &md->traits[j] : NULL;
+        w->i[k] = i;
+        w->j[k] = j;
         w->ux[k] = a->ux - b->ux;
         w->uy[k] = a->uy - b->uy;
         if (kernel & TANGENTIAL) w->rims[k] = s->rim + t->rim;
-        if (kernel & SPRING) w->spring[k] = md->springs[w->link[k]];
-        if (kernel & MASSES) w->inverse_mass[k] = s->inverse_mass + t->inverse_mass;
+        if (kernel & SPRING) w->spring[k] = md->springs[link];
+        if (kernel & MASSES) {
+            w->reach[k] = s->radius + t->radius;
+            w->inverse_mass[k] = s->inverse_mass + t->inverse_mass;
+        }
         if ((kernel & (HERTZ | MASSES)) == (HERTZ | MASSES)) {
             w->radius_product[k] = s->radius * t->radius;
         }
@@ -116,7 +118,8 @@ FORCE_INLINE uint64_t forces(const struct md *md, struct md_window *restrict w, 
 #pragma GCC ivdep
     for (uint32_t k = 0; k < count; k++) {
         const struct md_pair_law law = kernel & MIXTURE ? w->law[k] : one;
-        const double distance = sqrt(w->distance2[k]), inverse = 1 / distance;
+        const double distance = sqrt(w->dx[k] * w->dx[k] + w->dy[k] * w->dy[k]);
+        const double inverse = 1 / distance;
         const double nx = w->dx[k] * inverse, ny = w->dy[k] * inverse;
         const double reach = kernel & MASSES ? w->reach[k] : reach_one;
         const double overlap = reach - distance;

@@ -27,12 +27,12 @@ enum { TRAITS = 1, ROTATES = 2, GEAR = 4, FRESH = 8 };
 #define FORMS(X) X(0) X(1) X(3) X(4) X(5) X(7) X(8) X(9) X(11)
 
 /* Speeds are compared as bit patterns: for numbers >= 0 the order is the same, and what is not a
- * number comes out above all numbers. */
-FORCE_INLINE int64_t bits_of(double x)
+ * number comes out above all numbers, whatever its sign. */
+FORCE_INLINE uint64_t bits_of(double x)
 {
-    int64_t bits;
+    uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
-    return bits & INT64_MAX;
+    return bits;
 }
 
 FORCE_INLINE void move_verlet(struct md *md, uint32_t i, double ax, double ay, double at,
@@ -123,8 +123,8 @@ static void predict_gear(struct md *md, uint32_t t)
 struct forces { struct push *pushes; double *twists; };     /* twists: NULL where none spins */
 
 /* Moves the grains first..last-1 by their forces and empties the forces. */
-FORCE_INLINE int64_t move(struct md *md, struct forces forces, uint32_t first, uint32_t last,
-                          int64_t fastest, unsigned form)
+FORCE_INLINE uint64_t move(struct md *md, struct forces forces, uint32_t first, uint32_t last,
+                          uint64_t fastest, unsigned form)
 {
     const double gx = md->scene->gravity[0], gy = md->scene->gravity[1];
     for (uint32_t i = first; i < last; i++) {
@@ -141,7 +141,7 @@ FORCE_INLINE int64_t move(struct md *md, struct forces forces, uint32_t first, u
         if (form & GEAR) correct_gear(md, i, ax, ay, at, form);
         else move_verlet(md, i, ax, ay, at, form);
         const struct half h = md->halves[i];
-        const int64_t speed2 = bits_of(h.hx * h.hx + h.hy * h.hy);
+        const uint64_t speed2 = bits_of(h.hx * h.hx + h.hy * h.hy);
         fastest = speed2 > fastest ? speed2 : fastest;
     }
     return fastest;
@@ -153,8 +153,8 @@ static unsigned form_of(const struct md *md)
          | (md->some_fresh && !md->gears ? FRESH : 0);
 }
 
-static int64_t move_grains(const unsigned form, struct md *md, struct forces forces,
-                           uint32_t first, uint32_t last, int64_t fastest)
+static uint64_t move_grains(const unsigned form, struct md *md, struct forces forces,
+                           uint32_t first, uint32_t last, uint64_t fastest)
 {
     switch (form) {
 #define X(form) case form: return move(md, forces, first, last, fastest, form);
@@ -230,7 +230,7 @@ static void sweep(struct md *md, uint32_t t, struct forces forces, struct md_win
     if (md->turns) forces.twists -= strip->first;
     if (md->cross_count > 0) add_cross(md, t, forces);
     uint32_t done = strip->first;
-    int64_t fastest = 0;
+    uint64_t fastest = 0;
     for (uint32_t k = strip->link_first; k < strip->link_last;) {
         const uint32_t left = strip->link_last - k, last = k + (left < WINDOW ? left : WINDOW);
         md_pairs_window(md, k, last, w, &sums);
