@@ -28,9 +28,6 @@ static void choose_law(struct md *md)
         .spring = md->effects & EFFECT_STATIC_FRICTION,
     };
     md_law_pairs(md->scene, settings, md->pairs);
-    for (uint32_t s = 0; s < md->scene->species_count; s++) {
-        md->inverse_inertia[s] = md->scene->species[s].inertia == INERTIA_SPHERE ? 2.5 : 2;
-    }
     md->kernel = md_pairs_kernel(md);
 }
 
@@ -39,6 +36,8 @@ static void choose_lengths(struct md *md)
     const struct scene *scene = md->scene;
     const double share = isfinite(md->settings->skin) ? md->settings->skin : skin_default;
     md->reach_max = 2 * scene->radius_max;
+    md->radius_one = scene->radius_max;
+    md->inverse_mass_one = md_flow_trait(&scene->species[0], md->radius_one).inverse_mass;
     md->skin = share * scene->radius_max;
     md->suspect_overlap = scene->overlap_limit * scene->radius_min;
     md->wall_speed = md_walls_speed(md);
@@ -59,15 +58,21 @@ static bool allocate(struct md *md)
     const uint32_t n = md->count_max, species = scene->species_count;
     const bool gear = md->settings->integrator == MD_GEAR;
     const bool rates = md->effects & EFFECT_COLLISION_RATE;
+    const bool spins = md->effects & EFFECT_FRICTION;
+    const bool differ = md->effects & (EFFECT_POLYDISPERSE | EFFECT_MIXTURE);
     md->strip_room = n < STRIP_GRAINS_MAX ? n : STRIP_GRAINS_MAX;
     md->batch_max = source_batch_max(scene);
     return arena_array(arena, &md->pairs, species * species)
-        && arena_array(arena, &md->inverse_inertia, species)
         && arena_array(arena, &md->grains, n) && arena_array(arena, &md->halves, n)
+        && arena_array(arena, &md->tags, n)
+        && arena_array(arena, &md->traits, spins || differ ? n : 0)
+        && arena_array(arena, &md->turns, spins ? n : 0)
         && arena_array(arena, &md->gears, gear ? n : 0)
         && arena_array(arena, &md->collisions, rates ? n : 0)
         && arena_array(arena, &md->collision_rate, rates ? n : 0)
         && arena_array(arena, &md->pushes, (size_t)md->strip_room * md->thread_count)
+        && arena_array(arena, &md->twists,
+                       spins ? (size_t)md->strip_room * md->thread_count : 0)
         && arena_array(arena, &md->cursors, scene->source_count)
         && arena_array(arena, &md->batch, md->batch_max)
         && md_list_create(md) && md_walls_create(md) && tally_create(&md->tally, scene, arena);
@@ -220,6 +225,22 @@ static void md_push(void *state, const struct impulse *impulse)
     md->stride = fmax(md->stride, fastest * md->dt);
 }
 
+/* What a scene of fewer effects did not keep: grains that are all alike, and spins. */
+static void add_absent(struct md *md, const struct archive *archive)
+{
+    const bool had_traits = archive_has(archive, "md.traits");
+    const bool had_turns = archive_has(archive, "md.turns");
+    md->some_fresh = false;
+    for (uint32_t i = 0; i < md->count; i++) {
+        md->some_fresh = md->some_fresh || md->tags[i].fresh;
+        if (md->traits && !had_traits) {
+            const struct species *species = &md->scene->species[md->tags[i].species];
+            md->traits[i] = md_flow_trait(species, md->radius_one);
+        }
+        if (md->turns && !had_turns) md->turns[i] = (struct turn){.hrim = md->traits[i].rim};
+    }
+}
+
 static void md_archive(void *state, struct archive *archive)
 {
     struct md *md = state;
@@ -227,6 +248,9 @@ static void md_archive(void *state, struct archive *archive)
     archive_value(archive, "md.id_next", &md->id_next);
     archive_array(archive, "md.grains", md->grains, md->count);
     archive_array(archive, "md.halves", md->halves, md->count);
+    archive_array(archive, "md.tags", md->tags, md->count);
+    archive_array(archive, "md.traits", md->traits, md->count);
+    archive_array(archive, "md.turns", md->turns, md->count);
     archive_array(archive, "md.gears", md->gears, md->count);
     archive_array(archive, "md.collisions", md->collisions, md->count);
     archive_array(archive, "md.collision_rate", md->collision_rate, md->count);
@@ -245,6 +269,7 @@ static void md_archive(void *state, struct archive *archive)
     tally_archive(&md->tally, archive);
     if (archive->mode != ARCHIVE_LOAD || archive->failed) return;
     const char *wrong = md_check(md);
+    if (!wrong) add_absent(md, archive);
     if (wrong) archive_fail(archive, wrong);
     else if (md->wall_here) md_walls_place(md);
 }
@@ -261,8 +286,12 @@ static const struct fault *md_fault(const void *state)
 
 static uint64_t md_memory(const struct scene *scene)
 {
+    const bool spins = scene->effects & EFFECT_FRICTION;
+    const bool differ = scene->effects & (EFFECT_POLYDISPERSE | EFFECT_MIXTURE);
     const uint64_t spring = scene->effects & EFFECT_STATIC_FRICTION ? 24 : 0;
-    const uint64_t grain = 2 * (sizeof(struct grain) + sizeof(struct half)) + 4 * sizeof(uint32_t);
+    const uint64_t record = sizeof(struct grain) + sizeof(struct half) + sizeof(struct tag)
+        + (spins || differ ? sizeof(struct trait) : 0) + (spins ? sizeof(struct turn) : 0);
+    const uint64_t grain = 2 * record + 4 * sizeof(uint32_t);
     const uint64_t links = 2 * sizeof(struct link) + sizeof(struct push) / 2 + 6 + spring;
     const uint64_t walls = scene->wall_count > 0 ? 8 * sizeof(struct wall_link) : 0;
     return (grain + 10 * links + walls) * stepping_room(scene);

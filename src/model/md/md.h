@@ -1,7 +1,9 @@
 /* md.h - the soft-disc model's own state; only files of this folder include it.
  *
- * A grain is one cache line that the contact loop reads whole.  Grains are sorted in space at
- * every rebuild of the neighbour list, so that partners lie close in memory; `id` keeps its name.
+ * What the contact loop reads of every grain is a record of half a cache line; what only some
+ * scenes need (sizes, spins) lies in records of its own, which other scenes neither have nor read.
+ * Grains are sorted in space at every rebuild of the neighbour list, so that partners lie close
+ * in memory; `id` keeps their names.
  *
  * Spin is held as the speed of the rim, R omega: then neither the slip of a contact nor the
  * change of spin needs a radius (d(R omega)/dt = R M / I = sum of forces / (q m)).
@@ -33,17 +35,23 @@
 struct grain {
     double   x, y;
     double   ux, uy;            /* velocity now, which forces read */
-    double   rim;               /* R omega, counter-clockwise */
-    double   radius;
-    double   inverse_mass;
-    uint32_t id;
-    uint16_t species;
-    uint16_t fresh;             /* has taken no step yet: its first kick is half a one */
 };
 
-struct half {                   /* what only the integrator touches */
-    double hx, hy, hrim;        /* velocities half a step back */
-    double angle;
+struct half { double hx, hy; }; /* velocities half a step back: only the integrator reads them */
+
+struct trait {                  /* where grains spin or are not all alike */
+    double radius, inverse_mass;
+    double inverse_inertia;     /* 1 / q, I = q m R^2 */
+    double rim;                 /* R omega, counter-clockwise */
+};
+
+struct turn { double hrim, angle; };    /* half a step back; R times the angle turned */
+
+struct tag {                    /* what no step reads */
+    uint32_t id;
+    uint16_t species;
+    uint8_t  fresh;             /* has taken no step yet: its first kick is half a one */
+    uint8_t  gone;              /* has left; the next list drops it */
 };
 
 /* Gear: scaled derivatives d^k/dt^k dt^k/k! beyond the velocity, of position (k = 2..5) and of
@@ -57,12 +65,13 @@ struct link { uint32_t i, j; };
 enum {
     LINK_IMAGE_SHIFT = 27,                      /* 4 bits: which periodic image */
     LINK_INDEX = (1 << LINK_IMAGE_SHIFT) - 1,   /* at most 134 million grains */
+    LINK_IMAGE = 15 << LINK_IMAGE_SHIFT,
     LINK_IMAGES = 9,
     LINKS_AHEAD = 32            /* whose partner is fetched into the cache beforehand */
 };
 #define LINK_TOUCHES 0x80000000u
 
-struct push { double fx, fy, ft, unused; };     /* force on a grain; ft: sum of rim forces */
+struct push { double fx, fy; };                 /* force on a grain */
 
 /* A grain near a wall. */
 struct wall_link {
@@ -101,7 +110,6 @@ struct md {
     unsigned  kernel;           /* index of the compiled force loop */
     struct md_law law;
     struct md_pair_law *pairs;  /* [species][species] */
-    double   *inverse_inertia;  /* 1 / q by species, I = q m R^2 */
 
     double   dt, epoch;         /* time = epoch + steps_here * dt */
     uint64_t steps, steps_here;
@@ -109,7 +117,12 @@ struct md {
     uint32_t count, count_max, id_next;
     struct grain *grains;
     struct half  *halves;
+    struct tag   *tags;
+    struct trait *traits;       /* NULL where all grains are alike and none spins */
+    struct turn  *turns;        /* NULL where none spins */
     struct gear  *gears;        /* NULL without the Gear integrator */
+    double   radius_one, inverse_mass_one;      /* where all are alike */
+    bool     some_fresh;
 
     double   reach_max;         /* largest sum of two radii */
     double   suspect_overlap;   /* beyond which a contact is looked at one by one */
@@ -125,12 +138,14 @@ struct md {
     double  *springs;           /* NULL without static friction */
     uint32_t *incoming;         /* cross links by the strip in which they end */
     struct push *cross_push;    /* force of each cross link on its first grain */
+    double  *cross_twist;       /* and on the rims of both; NULL where none spins */
 
     uint32_t strip_count, strip_max;
     struct strip *strips;
     struct strip_sums *sums;
     uint32_t thread_count;
     struct push *pushes;        /* [thread][strip_room]: forces while a strip is worked */
+    double  *twists;            /* likewise: sums of rim forces; NULL where none spins */
     uint32_t strip_room;
 
     uint32_t wall_link_count, wall_link_max;
@@ -162,6 +177,21 @@ struct md {
 static inline double md_time(const struct md *md)
 {
     return md->epoch + (double)md->steps_here * md->dt;
+}
+
+static inline double md_radius(const struct md *md, uint32_t i)
+{
+    return md->traits ? md->traits[i].radius : md->radius_one;
+}
+
+static inline double md_inverse_mass(const struct md *md, uint32_t i)
+{
+    return md->traits ? md->traits[i].inverse_mass : md->inverse_mass_one;
+}
+
+static inline double md_rim(const struct md *md, uint32_t i)
+{
+    return md->traits ? md->traits[i].rim : 0;
 }
 
 static inline const struct md_pair_law *md_pair_law(const struct md *md, uint32_t a, uint32_t b)

@@ -19,12 +19,15 @@ static bool grains_hold(const struct md *md)
     for (uint32_t i = 0; i < md->count; i++) {
         const struct grain *g = &md->grains[i];
         const struct half *h = &md->halves[i];
-        if (g->species >= md->scene->species_count) return false;
+        const struct trait *t = md->traits ? &md->traits[i] : NULL;
+        const struct turn *turn = md->turns ? &md->turns[i] : NULL;
+        if (md->tags[i].species >= md->scene->species_count) return false;
         if (!is_number(g->x) || !is_number(g->y) || !is_number(g->ux) || !is_number(g->uy)
-            || !is_number(g->rim) || !is_number(h->hx) || !is_number(h->hy)
-            || !is_number(h->hrim) || !is_number(h->angle)) return false;
-        if (!(g->radius > 0) || !is_number(g->radius) || !(g->inverse_mass >= 0)
-            || !is_number(g->inverse_mass)) return false;
+            || !is_number(h->hx) || !is_number(h->hy)) return false;
+        if (turn && (!is_number(turn->hrim) || !is_number(turn->angle))) return false;
+        if (t && (!(t->radius > 0) || !is_number(t->radius) || !(t->inverse_mass > 0)
+                  || !is_number(t->inverse_mass) || !(t->inverse_inertia > 0)
+                  || !is_number(t->inverse_inertia) || !is_number(t->rim))) return false;
     }
     return true;
 }

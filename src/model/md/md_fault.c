@@ -13,7 +13,7 @@ static void blame(struct md *md, uint32_t i)
 {
     const struct grain *g = &md->grains[i];
     md->broken = true;
-    md->fault = (struct fault){.time = md_time(md), .x = g->x, .y = g->y, .grain = g->id};
+    md->fault = (struct fault){.time = md_time(md), .x = g->x, .y = g->y, .grain = md->tags[i].id};
 }
 
 static bool blame_number(struct md *md)
@@ -25,7 +25,7 @@ static bool blame_number(struct md *md)
         snprintf(md->fault.text, sizeof md->fault.text, "t = %g: grain %u at (%g, %g) moves at "
                  "(%g, %g), which is no number; the time step is too long for the contact: "
                  "delete md.dt and sandreel chooses, or divide md.dt = %g by ten",
-                 md->fault.time, g->id, g->x, g->y, g->ux, g->uy, md->dt);
+                 md->fault.time, md->tags[i].id, g->x, g->y, g->ux, g->uy, md->dt);
         return false;
     }
     return true;
@@ -99,11 +99,11 @@ static bool check_overlaps(struct md *md)
         place_before(md, link.i, &xi, &yi);
         place_before(md, j, &xj, &yj);
         const double dx = xi - xj - md->image_x[image], dy = yi - yj - md->image_y[image];
-        const double ri = md->grains[link.i].radius, rj = md->grains[j].radius;
+        const double ri = md_radius(md, link.i), rj = md_radius(md, j);
         const double share = (ri + rj - hypot(dx, dy)) / fmin(ri, rj);
         if (share <= limit) continue;
         char with[48];
-        snprintf(with, sizeof with, "grain %u", md->grains[j].id);
+        snprintf(with, sizeof with, "grain %u", md->tags[j].id);
         return blame_overlap(md, link.i, share, with);
     }
     for (uint32_t k = 0; k < md->wall_link_count; k++) {
@@ -113,7 +113,7 @@ static bool check_overlaps(struct md *md)
         place_before(md, link->grain, &x, &y);
         const struct wall_nearest nearest = wall_nearest(&md->walls_now[link->wall],
             x - md->image_x[link->image], y - md->image_y[link->image]);
-        const double share = 1 - nearest.distance / md->grains[link->grain].radius;
+        const double share = 1 - nearest.distance / md_radius(md, link->grain);
         if (!(share > limit)) continue;
         return has_just_shut(md, link->wall) ? blame_gate(md, link->grain, link->wall, share)
                                              : blame_overlap(md, link->grain, share, "a wall");
@@ -134,16 +134,17 @@ bool md_fault_escaped(struct md *md)
     const double *box = scene->box;
     for (uint32_t i = 0; i < md->count; i++) {
         const struct grain *g = &md->grains[i];
-        const double room = 2 * g->radius;
+        const double room = 2 * md_radius(md, i);
         const bool out = (scene->left == BORDER_WALL && g->x < box[0] - room)
                       || (scene->right == BORDER_WALL && g->x > box[2] + room)
                       || (scene->bottom == BORDER_WALL && g->y < box[1] - room)
                       || (scene->top == BORDER_WALL && g->y > box[3] + room);
-        if (!out || g->inverse_mass == 0) continue;
+        if (!out || md->tags[i].gone) continue;
         blame(md, i);
         snprintf(md->fault.text, sizeof md->fault.text, "t = %g: grain %u got through the border "
                  "to (%.6g, %.6g); it was too fast for the time step: make md.dt = %g smaller, "
-                 "or the grains stiffer (md.overlap)", md->fault.time, g->id, g->x, g->y, md->dt);
+                 "or the grains stiffer (md.overlap)", md->fault.time, md->tags[i].id,
+                 g->x, g->y, md->dt);
         return false;
     }
     return true;

@@ -1,7 +1,7 @@
 /* md_flow.c - grains that enter and leave.
  *
  * Grains leave when the list is made anew, that is before any has moved farther than half the
- * skin.  One that leaves is marked by zero inverse mass and dropped by the sort.
+ * skin.  One that leaves is marked and dropped by the sort.
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/md/md_flow.h"
@@ -23,14 +23,16 @@ bool md_flow_due(const struct md *md)
     return false;
 }
 
-static bool has_left(struct md *md, const struct grain *g, double t)
+static bool has_left(struct md *md, uint32_t i, double t)
 {
     const struct scene *scene = md->scene;
-    if (stepping_left(scene, g->x, g->y, g->radius)) return true;
+    const struct grain *g = &md->grains[i];
+    const double radius = md_radius(md, i);
+    if (stepping_left(scene, g->x, g->y, radius)) return true;
     if (scene->screen_count == 0) return false;
-    const struct species *species = &scene->species[g->species];
-    return tally_cross(&md->tally, scene, t, g->x, g->y, g->ux, g->uy, g->rim / g->radius,
-                       1 / g->inverse_mass, scene_inertia(species, g->radius));
+    const struct species *species = &scene->species[md->tags[i].species];
+    return tally_cross(&md->tally, scene, t, g->x, g->y, g->ux, g->uy, md_rim(md, i) / radius,
+                       1 / md_inverse_mass(md, i), scene_inertia(species, radius));
 }
 
 static void let_out(struct md *md)
@@ -38,10 +40,9 @@ static void let_out(struct md *md)
     const double t = md_time(md);
     if (!(md->effects & (EFFECT_OUTFLOW | EFFECT_SCREEN))) return;
     for (uint32_t i = 0; i < md->count; i++) {
-        struct grain *g = &md->grains[i];
-        if (!has_left(md, g, t)) continue;
-        md->tally.mass_out += 1 / g->inverse_mass;
-        g->inverse_mass = 0;
+        if (!has_left(md, i, t)) continue;
+        md->tally.mass_out += 1 / md_inverse_mass(md, i);
+        md->tags[i].gone = true;
         md->grains_out++;
     }
 }
@@ -51,33 +52,43 @@ static bool has_room(const struct md *md, const struct source_grain *grain)
 {
     for (uint32_t i = 0; i < md->count; i++) {
         const struct grain *g = &md->grains[i];
-        if (g->inverse_mass == 0) continue;
-        const double reach = g->radius + grain->radius;
+        if (md->tags[i].gone) continue;
+        const double reach = md_radius(md, i) + grain->radius;
         const double dx = g->x - grain->x, dy = g->y - grain->y;
         if (dx * dx + dy * dy < reach * reach) return false;
     }
     return true;
 }
 
+struct trait md_flow_trait(const struct species *species, double radius)
+{
+    return (struct trait){.radius = radius, .inverse_mass = 1 / scene_mass(species, radius),
+                          .inverse_inertia = species->inertia == INERTIA_SPHERE ? 2.5 : 2};
+}
+
 bool md_flow_add(struct md *md, const struct source_grain *grain, double spin)
 {
     if (md->count == md->count_max) return false;
-    const double mass = scene_mass(&md->scene->species[grain->species], grain->radius);
+    const struct species *species = &md->scene->species[grain->species];
     const double *gravity = md->scene->gravity;
-    const double rim = md->law.tangential ? spin * grain->radius : 0;
-    md->grains[md->count] = (struct grain){
-        .x = grain->x, .y = grain->y, .ux = grain->vx, .uy = grain->vy, .rim = rim,
-        .radius = grain->radius, .inverse_mass = 1 / mass, .id = md->id_next++,
-        .species = grain->species, .fresh = !md->gears,
-    };
-    md->halves[md->count] = (struct half){.hx = grain->vx, .hy = grain->vy, .hrim = rim};
+    const uint32_t i = md->count;
+    md->grains[i] = (struct grain){grain->x, grain->y, grain->vx, grain->vy};
+    md->halves[i] = (struct half){grain->vx, grain->vy};
+    md->tags[i] = (struct tag){.id = md->id_next++, .species = grain->species,
+                               .fresh = !md->gears};
+    md->some_fresh = !md->gears;
+    if (md->traits) {
+        md->traits[i] = md_flow_trait(species, grain->radius);
+        if (md->turns) md->traits[i].rim = spin * grain->radius;
+    }
+    if (md->turns) md->turns[i] = (struct turn){.hrim = md->traits[i].rim};
     if (md->gears) {
-        md->gears[md->count] = (struct gear){.x2 = 0.5 * md->dt * md->dt * gravity[0],
+        md->gears[i] = (struct gear){.x2 = 0.5 * md->dt * md->dt * gravity[0],
                                              .y2 = 0.5 * md->dt * md->dt * gravity[1]};
     }
     if (md->collisions) {
-        md->collisions[md->count] = 0;
-        md->collision_rate[md->count] = 0;
+        md->collisions[i] = 0;
+        md->collision_rate[i] = 0;
     }
     md->count++;
     return true;

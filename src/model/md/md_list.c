@@ -31,6 +31,9 @@ struct md_scratch {
     uint32_t *place;            /* new index by old; NONE: has left */
     struct grain *grains;
     struct half  *halves;
+    struct tag   *tags;
+    struct trait *traits;
+    struct turn  *turns;
     struct gear  *gears;
     uint32_t *collisions;
     float    *collision_rate;
@@ -66,12 +69,16 @@ bool md_list_create(struct md *md)
         && arena_array(arena, &md->springs, springs ? md->link_max : 0)
         && arena_array(arena, &md->incoming, md->link_max / 2)
         && arena_array(arena, &md->cross_push, md->strip_max > 1 ? md->link_max / 2 : 0)
+        && arena_array(arena, &md->cross_twist,
+                       md->strip_max > 1 && md->turns ? md->link_max / 2 : 0)
         && arena_array(arena, &md->strips, md->strip_max)
         && arena_array(arena, &md->sums, md->strip_max)
         && arena_array(arena, &s->cell_first, s->cell_max + 1)
         && arena_array(arena, &s->cell_of, n) && arena_array(arena, &s->order, n)
         && arena_array(arena, &s->place, n) && arena_array(arena, &s->grains, n)
-        && arena_array(arena, &s->halves, n)
+        && arena_array(arena, &s->halves, n) && arena_array(arena, &s->tags, n)
+        && arena_array(arena, &s->traits, md->traits ? n : 0)
+        && arena_array(arena, &s->turns, md->turns ? n : 0)
         && arena_array(arena, &s->gears, md->gears ? n : 0)
         && arena_array(arena, &s->collisions, md->collisions ? n : 0)
         && arena_array(arena, &s->collision_rate, md->collisions ? n : 0)
@@ -163,7 +170,7 @@ static void sort_grains(struct md *md)
     SHARED_LOOP
     for (uint32_t i = 0; i < old_count; i++) {
         const struct grain *g = &md->grains[i];
-        s->cell_of[i] = g->inverse_mass == 0 ? NONE
+        s->cell_of[i] = md->tags[i].gone ? NONE
                       : cell_index(s, cell_along(g->x - s->x0, s->per_x, s->nx),
                                    cell_along(g->y - s->y0, s->per_y, s->ny));
     }
@@ -185,27 +192,25 @@ static void sort_grains(struct md *md)
 
 #define SWAP(a, b) do { void *swap_ = (a); (a) = (b); (b) = swap_; } while (0)
 
+#define PERMUTE(array)                                                                     \
+    do {                                                                                   \
+        if (!md->array) break;                                                             \
+        SHARED_LOOP                                                                        \
+        for (uint32_t i = 0; i < md->count; i++) s->array[i] = md->array[s->order[i]];     \
+        SWAP(md->array, s->array);                                                         \
+    } while (0)
+
 static void permute(struct md *md)
 {
     struct md_scratch *s = md->scratch;
-    SHARED_LOOP
-    for (uint32_t i = 0; i < md->count; i++) {
-        s->grains[i] = md->grains[s->order[i]];
-        s->halves[i] = md->halves[s->order[i]];
-    }
-    SWAP(md->grains, s->grains);
-    SWAP(md->halves, s->halves);
-    if (md->gears) {
-        for (uint32_t i = 0; i < md->count; i++) s->gears[i] = md->gears[s->order[i]];
-        SWAP(md->gears, s->gears);
-    }
-    if (!md->collisions) return;
-    for (uint32_t i = 0; i < md->count; i++) {
-        s->collisions[i] = md->collisions[s->order[i]];
-        s->collision_rate[i] = md->collision_rate[s->order[i]];
-    }
-    SWAP(md->collisions, s->collisions);
-    SWAP(md->collision_rate, s->collision_rate);
+    PERMUTE(grains);
+    PERMUTE(halves);
+    PERMUTE(tags);
+    PERMUTE(traits);
+    PERMUTE(turns);
+    PERMUTE(gears);
+    PERMUTE(collisions);
+    PERMUTE(collision_rate);
 }
 
 /* Chains the contacts of the old list by the new index of their first grain. */
@@ -252,7 +257,13 @@ static uint32_t neighbourhood(const struct md *md, uint32_t cx, uint32_t cy,
     const bool along_x = md->scene->left == BORDER_PERIODIC;
     const bool along_y = md->scene->bottom == BORDER_PERIODIC;
     const uint32_t here = cell_index(s, cx, cy);
+    const uint32_t *const at = &s->cell_first[here];
     uint32_t count = 0;
+    if (cx > 0 && cy > 0 && cx + 1 < s->nx && cy + 1 < s->ny) {       /* nearly always */
+        out[0] = (struct stretch){at[0], at[2], 0};
+        out[1] = (struct stretch){at[s->fast - 1], at[s->fast + 2], 0};
+        return 2;
+    }
     for (int a = -1; a <= 1; a++) {
         for (int b = -1; b <= 1; b++) {
             const int dx = s->x_is_fast ? b : a, dy = s->x_is_fast ? a : b;
@@ -298,10 +309,12 @@ static void carry_contact(const struct md *md, uint32_t i, uint32_t j, struct li
 
 /* Lists the links of strip t into its stretch of the scratch array: those within the strip from
  * below, those to later strips from above.  False: no room. */
-static bool list_strip(struct md *md, uint32_t t)
+FORCE_INLINE bool list_strip(struct md *md, uint32_t t, bool sizes)
 {
     struct md_scratch *s = md->scratch;
     const struct strip *strip = &md->strips[t];
+    const struct trait *const traits = md->traits;
+    const double reach_one = 2 * md->radius_one + md->skin;
     const uint32_t begin = strip->first * s->links_per_grain;
     const uint32_t room = (strip->last - strip->first) * s->links_per_grain;
     uint32_t inner = 0, cross = 0, cell = NONE, stretches = 0;
@@ -321,7 +334,8 @@ static bool list_strip(struct md *md, uint32_t t)
             for (uint32_t j = first; j < around[r].last; j++) {
                 const struct grain *h = &md->grains[j];
                 const double dx = x - h->x, dy = y - h->y;
-                const double reach = g->radius + h->radius + md->skin;
+                const double reach = sizes ? traits[i].radius + traits[j].radius + md->skin
+                                           : reach_one;
                 if (dx * dx + dy * dy >= reach * reach) continue;
                 if (inner + cross == room) return false;
                 const bool crosses = j >= strip->last;
@@ -436,7 +450,9 @@ bool md_list_rebuild(struct md *md)
     bool room = true;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(md->thread_count) \
         if (md->strip_count > 1) reduction(&& : room)
-    for (uint32_t t = 0; t < md->strip_count; t++) room = list_strip(md, t) && room;
+    for (uint32_t t = 0; t < md->strip_count; t++) {
+        room = (md->traits ? list_strip(md, t, true) : list_strip(md, t, false)) && room;
+    }
     if (!room || !join_strips(md)) return list_full(md, "pairs of neighbours");
     list_incoming(md);
     if (!md_walls_list(md, s->order)) return list_full(md, "grains at walls");

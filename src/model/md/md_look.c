@@ -32,21 +32,22 @@ static bool is_seen(const struct grains *out, double x, double y, double radius)
 static void show_grain(const struct md *md, uint32_t i, struct grains *out, uint32_t at)
 {
     const struct grain *g = &md->grains[i];
+    const double radius = md_radius(md, i);
     double x, y;
     place_of(md, g, &x, &y);
-    if (out->id) out->id[at] = g->id;
+    if (out->id) out->id[at] = md->tags[i].id;
     if (out->x) out->x[at] = x;
     if (out->y) out->y[at] = y;
     if (out->vx) out->vx[at] = g->ux;
     if (out->vy) out->vy[at] = g->uy;
-    if (out->angle) out->angle[at] = md->halves[i].angle / g->radius;
-    if (out->spin) out->spin[at] = g->rim / g->radius;
-    if (out->radius) out->radius[at] = g->radius;
-    if (out->mass) out->mass[at] = 1 / g->inverse_mass;
+    if (out->angle) out->angle[at] = md->turns ? md->turns[i].angle / radius : 0;
+    if (out->spin) out->spin[at] = md_rim(md, i) / radius;
+    if (out->radius) out->radius[at] = radius;
+    if (out->mass) out->mass[at] = 1 / md_inverse_mass(md, i);
     if (out->collision_rate) {
         out->collision_rate[at] = md->collision_rate ? md->collision_rate[i] : 0;
     }
-    if (out->species) out->species[at] = g->species;
+    if (out->species) out->species[at] = md->tags[i].species;
 }
 
 /* The contact of one link, its force and energy; false if the two do not touch. */
@@ -55,23 +56,24 @@ struct pair_touch { double nx, ny, overlap, fx, fy, energy, smaller; };
 static bool touch_pair(const struct md *md, uint32_t k, struct pair_touch *touch)
 {
     const struct link link = md->links[k];
-    const struct grain *a = &md->grains[link.i], *b = &md->grains[link.j & LINK_INDEX];
-    const uint32_t image = link.j >> LINK_IMAGE_SHIFT & 15;
+    const uint32_t i = link.i, j = link.j & LINK_INDEX, image = link.j >> LINK_IMAGE_SHIFT & 15;
+    const struct grain *a = &md->grains[i], *b = &md->grains[j];
+    const double ri = md_radius(md, i), rj = md_radius(md, j);
     const double dx = a->x - b->x - md->image_x[image], dy = a->y - b->y - md->image_y[image];
-    const double distance = sqrt(dx * dx + dy * dy), reach = a->radius + b->radius;
+    const double distance = sqrt(dx * dx + dy * dy), reach = ri + rj;
     if (!(distance < reach)) return false;
     const double nx = dx / distance, ny = dy / distance;
     const double ux = a->ux - b->ux, uy = a->uy - b->uy;
-    const struct md_pair_law *law = md_pair_law(md, a->species, b->species);
+    const struct md_pair_law *law = md_pair_law(md, md->tags[i].species, md->tags[j].species);
     const struct md_touch contact = {
         .overlap = reach - distance, .closing = -(ux * nx + uy * ny),
-        .slip = uy * nx - ux * ny - distance / reach * (a->rim + b->rim),
-        .mass = 1 / (a->inverse_mass + b->inverse_mass),
-        .radius = a->radius * b->radius / reach, .spring = md->springs ? md->springs[k] : 0,
+        .slip = uy * nx - ux * ny - distance / reach * (md_rim(md, i) + md_rim(md, j)),
+        .mass = 1 / (md_inverse_mass(md, i) + md_inverse_mass(md, j)),
+        .radius = ri * rj / reach, .spring = md->springs ? md->springs[k] : 0,
     };
     const struct md_force_out force = md_law_force(&md->law, law, &contact);
     *touch = (struct pair_touch){
-        .nx = nx, .ny = ny, .overlap = contact.overlap, .smaller = fmin(a->radius, b->radius),
+        .nx = nx, .ny = ny, .overlap = contact.overlap, .smaller = fmin(ri, rj),
         .fx = force.normal * nx - force.tangential * ny,
         .fy = force.normal * ny + force.tangential * nx,
         .energy = md_law_energy(&md->law, law, contact.overlap, contact.radius, contact.spring),
@@ -95,7 +97,7 @@ static void show_contacts(const struct md *md, const int64_t *entry, struct grai
         if (i == OUTSIDE || j == OUTSIDE || !touch_pair(md, k, &touch)) continue;
         double x, y;
         place_of(md, &md->grains[link.i], &x, &y);
-        const double arm = md->grains[link.i].radius - 0.5 * touch.overlap;
+        const double arm = md_radius(md, link.i) - 0.5 * touch.overlap;
         add_contact(out, &(struct contact){
             .i = (uint32_t)i, .j = (uint32_t)j, .x = (float)(x - arm * touch.nx),
             .y = (float)(y - arm * touch.ny), .fx = (float)touch.fx, .fy = (float)touch.fy,
@@ -136,7 +138,7 @@ void md_look_observe(const void *state, struct grains *out)
         double x, y;
         place_of(md, g, &x, &y);
         if (entry) entry[i] = OUTSIDE;
-        if (g->inverse_mass == 0 || !is_seen(out, x, y, g->radius)) continue;
+        if (md->tags[i].gone || !is_seen(out, x, y, md_radius(md, i))) continue;
         if (out->count == out->capacity) {
             out->missed++;
             continue;
@@ -153,10 +155,13 @@ static void count_grains(const struct md *md, struct counters *out)
     const double *gravity = md->scene->gravity;
     for (uint32_t i = 0; i < md->count; i++) {
         const struct grain *g = &md->grains[i];
-        if (g->inverse_mass == 0) continue;
-        const double mass = 1 / g->inverse_mass;
+        if (md->tags[i].gone) continue;
+        const double mass = 1 / md_inverse_mass(md, i);
         out->kinetic_energy += 0.5 * mass * (g->ux * g->ux + g->uy * g->uy);
-        out->rotational_energy += 0.5 * mass / md->inverse_inertia[g->species] * g->rim * g->rim;
+        if (md->traits) {
+            const struct trait *t = &md->traits[i];
+            out->rotational_energy += 0.5 * mass / t->inverse_inertia * t->rim * t->rim;
+        }
         out->potential_energy -= mass * (gravity[0] * g->x + gravity[1] * g->y);
         out->momentum_x += mass * g->ux;
         out->momentum_y += mass * g->uy;
@@ -187,7 +192,7 @@ void md_look_count(const void *state, struct counters *out)
         for (uint32_t o = 0; o < k - first; o++) {
             if (!touches[o].counts) continue;
             out->potential_energy += touches[o].energy;
-            out->overlap_max = fmax(out->overlap_max, touches[o].overlap / md->grains[i].radius);
+            out->overlap_max = fmax(out->overlap_max, touches[o].overlap / md_radius(md, i));
         }
     }
 }

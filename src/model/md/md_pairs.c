@@ -45,32 +45,34 @@ static void turn(struct md *md, uint32_t k, bool touches, struct strip_sums *sum
     md->collisions[j]++;
 }
 
+/* Which of the links touch.  Most do not, or not yet: nothing is stored for them that lasts. */
 FORCE_INLINE void find(struct md *md, uint32_t first, uint32_t last, struct md_window *w,
-                       struct strip_sums *sums, bool periodic)
+                       struct strip_sums *sums, unsigned kernel, bool periodic)
 {
     const struct grain *const grains = md->grains;
+    const struct trait *const traits = md->traits;
     const struct link *const links = md->links;
+    const double reach_one = 2 * md->radius_one;
     uint32_t n = 0;
     for (uint32_t k = first; k < last; k++) {
         const struct link link = links[k];
-        __builtin_prefetch(&grains[links[k + LINKS_AHEAD].j & LINK_INDEX]);
+        const uint32_t ahead = links[k + LINKS_AHEAD].j & LINK_INDEX;
+        __builtin_prefetch(&grains[ahead]);
+        if (kernel & (MASSES | TANGENTIAL)) __builtin_prefetch(&traits[ahead]);
         const uint32_t j = link.j & LINK_INDEX;
         const struct grain *a = &grains[link.i], *b = &grains[j];
         double dx = a->x - b->x, dy = a->y - b->y;
-        if (periodic) {
+        if (periodic && __builtin_expect(link.j & LINK_IMAGE, 0)) {
             const uint32_t image = link.j >> LINK_IMAGE_SHIFT & 15;
             dx -= md->image_x[image];
             dy -= md->image_y[image];
         }
-        const double reach = a->radius + b->radius, distance2 = dx * dx + dy * dy;
-        const bool touches = distance2 < reach * reach;
+        const double reach = kernel & MASSES ? traits[link.i].radius + traits[j].radius
+                                             : reach_one;
+        const bool touches = dx * dx + dy * dy < reach * reach;
         w->link[n] = k;
-        w->i[n] = link.i;
-        w->j[n] = j;
         w->dx[n] = dx;
         w->dy[n] = dy;
-        w->reach[n] = reach;
-        w->distance2[n] = distance2;
         n += touches;
         if (__builtin_expect(touches != (link.j >= LINK_TOUCHES), 0)) turn(md, k, touches, sums);
     }
@@ -79,16 +81,28 @@ FORCE_INLINE void find(struct md *md, uint32_t first, uint32_t last, struct md_w
 
 FORCE_INLINE void gather(const struct md *md, struct md_window *w, unsigned kernel)
 {
-    const struct grain *const grains = md->grains;
+    const bool differ = kernel & (MASSES | TANGENTIAL);
     for (uint32_t k = 0; k < w->count; k++) {
-        const struct grain *a = &grains[w->i[k]], *b = &grains[w->j[k]];
+        const uint32_t link = w->link[k];
+        const uint32_t i = md->links[link].i, j = md->links[link].j & LINK_INDEX;
+        const struct grain *a = &md->grains[i], *b = &md->grains[j];
+        const struct trait *s = differ ? &md->traits[i] : NULL, *t = differ ? &md->traits[j] : NULL;
+        w->i[k] = i;
+        w->j[k] = j;
         w->ux[k] = a->ux - b->ux;
         w->uy[k] = a->uy - b->uy;
-        if (kernel & TANGENTIAL) w->rims[k] = a->rim + b->rim;
-        if (kernel & SPRING) w->spring[k] = md->springs[w->link[k]];
-        if (kernel & MASSES) w->inverse_mass[k] = a->inverse_mass + b->inverse_mass;
-        if (kernel & HERTZ) w->radius_product[k] = a->radius * b->radius;
-        if (kernel & MIXTURE) w->law[k] = *md_pair_law(md, a->species, b->species);
+        if (kernel & TANGENTIAL) w->rims[k] = s->rim + t->rim;
+        if (kernel & SPRING) w->spring[k] = md->springs[link];
+        if (kernel & MASSES) {
+            w->reach[k] = s->radius + t->radius;
+            w->inverse_mass[k] = s->inverse_mass + t->inverse_mass;
+        }
+        if ((kernel & (HERTZ | MASSES)) == (HERTZ | MASSES)) {
+            w->radius_product[k] = s->radius * t->radius;
+        }
+        if (kernel & MIXTURE) {
+            w->law[k] = *md_pair_law(md, md->tags[i].species, md->tags[j].species);
+        }
     }
 }
 
@@ -97,21 +111,25 @@ FORCE_INLINE uint64_t forces(const struct md *md, struct md_window *restrict w, 
 {
     const struct md_pair_law one = md->pairs[0];
     const double least = md->law.clip ? 0 : -1e300, dt = md->dt;
-    const double inverse_mass = 2 * md->grains[0].inverse_mass, suspect = md->suspect_overlap;
+    const double inverse_mass = 2 * md->inverse_mass_one, reach_one = 2 * md->radius_one;
+    const double product_one = md->radius_one * md->radius_one, suspect = md->suspect_overlap;
     const uint32_t count = w->count;
     uint64_t suspects = 0;
 #pragma GCC ivdep
     for (uint32_t k = 0; k < count; k++) {
         const struct md_pair_law law = kernel & MIXTURE ? w->law[k] : one;
-        const double distance = sqrt(w->distance2[k]), inverse = 1 / distance;
+        const double distance = sqrt(w->dx[k] * w->dx[k] + w->dy[k] * w->dy[k]);
+        const double inverse = 1 / distance;
         const double nx = w->dx[k] * inverse, ny = w->dy[k] * inverse;
-        const double overlap = w->reach[k] - distance;
+        const double reach = kernel & MASSES ? w->reach[k] : reach_one;
+        const double overlap = reach - distance;
         const double closing = -(w->ux[k] * nx + w->uy[k] * ny);
         const double mass = 1 / (kernel & MASSES ? w->inverse_mass[k] : inverse_mass);
         double stiffness = law.stiffness, damping = law.damping + law.damping_mass * sqrt(mass);
         double normal;
         if (kernel & HERTZ) {
-            const double root = sqrt(w->radius_product[k] / w->reach[k] * overlap);
+            const double product = kernel & MASSES ? w->radius_product[k] : product_one;
+            const double root = sqrt(product / reach * overlap);
             stiffness *= root;
             damping *= root;
             normal = 2.0 / 3.0 * stiffness * overlap + damping * closing;
@@ -122,7 +140,7 @@ FORCE_INLINE uint64_t forces(const struct md *md, struct md_window *restrict w, 
         suspects += overlap > suspect;
         double fx = normal * nx, fy = normal * ny;
         if (kernel & TANGENTIAL) {
-            const double lever = distance / w->reach[k];
+            const double lever = distance / reach;
             const double slip = w->uy[k] * nx - w->ux[k] * ny - lever * w->rims[k];
             const double drag = law.drag + law.drag_mass * mass + law.drag_share * damping;
             const double limit = law.friction * (normal > 0 ? normal : 0);
@@ -149,8 +167,8 @@ FORCE_INLINE uint64_t forces(const struct md *md, struct md_window *restrict w, 
 FORCE_INLINE void window_of(struct md *md, uint32_t first, uint32_t last, struct md_window *w,
                             struct strip_sums *sums, unsigned kernel)
 {
-    if (md->effects & EFFECT_PERIODIC) find(md, first, last, w, sums, true);
-    else find(md, first, last, w, sums, false);
+    if (md->effects & EFFECT_PERIODIC) find(md, first, last, w, sums, kernel, true);
+    else find(md, first, last, w, sums, kernel, false);
     gather(md, w, kernel);
     sums->suspect += forces(md, w, kernel);
     if (kernel & SPRING) {

@@ -9,7 +9,7 @@
 struct md_window {
     uint32_t count;
     uint32_t link[WINDOW], i[WINDOW], j[WINDOW];
-    double dx[WINDOW], dy[WINDOW], distance2[WINDOW];
+    double dx[WINDOW], dy[WINDOW];
     double ux[WINDOW], uy[WINDOW];      /* velocity of i relative to j */
     double rims[WINDOW];                /* sum of the rim speeds */
     double reach[WINDOW], inverse_mass[WINDOW], radius_product[WINDOW];

@@ -20,24 +20,30 @@
 #include <omp.h>
 #include <string.h>
 
-enum { ROTATES = 1, GEAR = 2 };
+/* How grains move: with traits of their own, turning, by Gear's method; some for the first time. */
+enum { TRAITS = 1, ROTATES = 2, GEAR = 4, FRESH = 8 };
+
+/* What turns has traits; nothing is fresh for Gear. */
+#define FORMS(X) X(0) X(1) X(3) X(4) X(5) X(7) X(8) X(9) X(11)
 
 /* Speeds are compared as bit patterns: for numbers >= 0 the order is the same, and what is not a
- * number comes out above all numbers. */
-FORCE_INLINE int64_t bits_of(double x)
+ * number comes out above all numbers, whatever its sign. */
+FORCE_INLINE uint64_t bits_of(double x)
 {
-    int64_t bits;
+    uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
-    return bits & INT64_MAX;
+    return bits;
 }
 
-FORCE_INLINE void move_verlet(struct grain *g, struct half *h, double ax, double ay, double at,
-                              double dt, unsigned form)
+FORCE_INLINE void move_verlet(struct md *md, uint32_t i, double ax, double ay, double at,
+                              unsigned form)
 {
-    const double half = 0.5 * dt;
+    struct grain *g = &md->grains[i];
+    struct half *h = &md->halves[i];
+    const double dt = md->dt, half = 0.5 * dt;
     double kick = dt;
-    if (__builtin_expect(g->fresh, 0)) {
-        g->fresh = 0;
+    if (form & FRESH && md->tags[i].fresh) {
+        md->tags[i].fresh = 0;
         kick = half;
     }
     h->hx += kick * ax;
@@ -47,9 +53,10 @@ FORCE_INLINE void move_verlet(struct grain *g, struct half *h, double ax, double
     g->x += dt * h->hx;
     g->y += dt * h->hy;
     if (form & ROTATES) {
-        h->hrim += kick * at;
-        g->rim = h->hrim + half * at;
-        h->angle += dt * h->hrim;
+        struct turn *turn = &md->turns[i];
+        turn->hrim += kick * at;
+        md->traits[i].rim = turn->hrim + half * at;
+        turn->angle += dt * turn->hrim;
     }
 }
 
@@ -59,9 +66,12 @@ static const double negligible = 1e-270;
 
 FORCE_INLINE double without_rest(double value) { return value + negligible - negligible; }
 
-FORCE_INLINE void correct_gear(struct grain *g, struct half *h, struct gear *d, double ax,
-                               double ay, double at, double dt, unsigned form)
+FORCE_INLINE void correct_gear(struct md *md, uint32_t i, double ax, double ay, double at,
+                               unsigned form)
 {
+    struct grain *g = &md->grains[i];
+    struct gear *d = &md->gears[i];
+    const double dt = md->dt;
     const double ex = 0.5 * ax * dt * dt - d->x2, ey = 0.5 * ay * dt * dt - d->y2;
     g->x += 3.0 / 16 * ex;
     g->y += 3.0 / 16 * ey;
@@ -75,15 +85,14 @@ FORCE_INLINE void correct_gear(struct grain *g, struct half *h, struct gear *d, 
     d->y4 = without_rest(d->y4 + 1.0 / 6 * ey);
     d->x5 = without_rest(d->x5 + 1.0 / 60 * ex);
     d->y5 = without_rest(d->y5 + 1.0 / 60 * ey);
-    h->hx = g->ux;
-    h->hy = g->uy;
+    md->halves[i] = (struct half){g->ux, g->uy};
     if (form & ROTATES) {
+        struct turn *turn = &md->turns[i];
         const double et = 0.5 * at * dt * dt - d->a2;
-        h->angle += 1.0 / 6 * et;
-        g->rim += 5.0 / 6 * et / dt;
+        turn->angle += 1.0 / 6 * et;
+        turn->hrim = md->traits[i].rim += 5.0 / 6 * et / dt;
         d->a2 += et;
         d->a3 = without_rest(d->a3 + 1.0 / 3 * et);
-        h->hrim = g->rim;
     }
 }
 
@@ -92,7 +101,6 @@ static void predict_gear(struct md *md, uint32_t t)
     const double dt = md->dt;
     for (uint32_t i = md->strips[t].first; i < md->strips[t].last; i++) {
         struct grain *g = &md->grains[i];
-        struct half *h = &md->halves[i];
         struct gear *d = &md->gears[i];
         g->x += dt * g->ux + d->x2 + d->x3 + d->x4 + d->x5;
         g->y += dt * g->uy + d->y2 + d->y3 + d->y4 + d->y5;
@@ -104,42 +112,56 @@ static void predict_gear(struct md *md, uint32_t t)
         d->y3 += 4 * d->y4 + 10 * d->y5;
         d->x4 += 5 * d->x5;
         d->y4 += 5 * d->y5;
-        h->angle += dt * g->rim + d->a2 + d->a3;
-        g->rim += (2 * d->a2 + 3 * d->a3) / dt;
+        if (!md->turns) continue;
+        double *const rim = &md->traits[i].rim;
+        md->turns[i].angle += dt * *rim + d->a2 + d->a3;
+        *rim += (2 * d->a2 + 3 * d->a3) / dt;
         d->a2 += 3 * d->a3;
     }
 }
 
+struct forces { struct push *pushes; double *twists; };     /* twists: NULL where none spins */
+
 /* Moves the grains first..last-1 by their forces and empties the forces. */
-FORCE_INLINE int64_t move(struct md *md, struct push *pushes, uint32_t first, uint32_t last,
-                          int64_t fastest, unsigned form)
+FORCE_INLINE uint64_t move(struct md *md, struct forces forces, uint32_t first, uint32_t last,
+                          uint64_t fastest, unsigned form)
 {
-    const double dt = md->dt, gx = md->scene->gravity[0], gy = md->scene->gravity[1];
-    for (uint32_t i = first; i < last; i++, pushes++) {
-        struct grain *g = &md->grains[i];
-        struct half *h = &md->halves[i];
-        const double ax = pushes->fx * g->inverse_mass + gx;
-        const double ay = pushes->fy * g->inverse_mass + gy;
-        const double at = form & ROTATES
-                        ? pushes->ft * g->inverse_mass * md->inverse_inertia[g->species] : 0;
-        *pushes = (struct push){0};
-        if (form & GEAR) correct_gear(g, h, &md->gears[i], ax, ay, at, dt, form);
-        else move_verlet(g, h, ax, ay, at, dt, form);
-        const int64_t speed2 = bits_of(h->hx * h->hx + h->hy * h->hy);
+    const double gx = md->scene->gravity[0], gy = md->scene->gravity[1];
+    for (uint32_t i = first; i < last; i++) {
+        const struct push push = forces.pushes[i];
+        const struct trait *trait = form & TRAITS ? &md->traits[i] : NULL;
+        const double inverse_mass = form & TRAITS ? trait->inverse_mass : md->inverse_mass_one;
+        const double ax = push.fx * inverse_mass + gx, ay = push.fy * inverse_mass + gy;
+        double at = 0;
+        forces.pushes[i] = (struct push){0};
+        if (form & ROTATES) {
+            at = forces.twists[i] * inverse_mass * trait->inverse_inertia;
+            forces.twists[i] = 0;
+        }
+        if (form & GEAR) correct_gear(md, i, ax, ay, at, form);
+        else move_verlet(md, i, ax, ay, at, form);
+        const struct half h = md->halves[i];
+        const uint64_t speed2 = bits_of(h.hx * h.hx + h.hy * h.hy);
         fastest = speed2 > fastest ? speed2 : fastest;
     }
     return fastest;
 }
 
-static int64_t move_grains(const unsigned form, struct md *md, struct push *pushes,
-                           uint32_t first, uint32_t last, int64_t fastest)
+static unsigned form_of(const struct md *md)
+{
+    return (md->traits ? TRAITS : 0) | (md->turns ? ROTATES : 0) | (md->gears ? GEAR : 0)
+         | (md->some_fresh && !md->gears ? FRESH : 0);
+}
+
+static uint64_t move_grains(const unsigned form, struct md *md, struct forces forces,
+                           uint32_t first, uint32_t last, uint64_t fastest)
 {
     switch (form) {
-    case 0:       return move(md, pushes, first, last, fastest, 0);
-    case ROTATES: return move(md, pushes, first, last, fastest, ROTATES);
-    case GEAR:    return move(md, pushes, first, last, fastest, GEAR);
-    default:      return move(md, pushes, first, last, fastest, GEAR | ROTATES);
+#define X(form) case form: return move(md, forces, first, last, fastest, form);
+    FORMS(X)
+#undef X
     }
+    return fastest;
 }
 
 /* Forces of the links from strip t to later ones. */
@@ -150,73 +172,76 @@ static void push_cross(struct md *md, uint32_t t, struct md_window *w)
     struct strip_sums sums = {0};
     for (uint32_t k = strip->cross_first; k < strip->cross_last; k += WINDOW) {
         const uint32_t left = strip->cross_last - k, last = k + (left < WINDOW ? left : WINDOW);
-        for (uint32_t c = k; c < last; c++) md->cross_push[c - base] = (struct push){0};
+        memset(&md->cross_push[k - base], 0, (last - k) * sizeof *md->cross_push);
+        if (md->turns) memset(&md->cross_twist[k - base], 0, (last - k) * sizeof(double));
         md_pairs_window(md, k, last, w, &sums);
         for (uint32_t c = 0; c < w->count; c++) {
-            md->cross_push[w->link[c] - base] = (struct push){w->fx[c], w->fy[c], w->ft[c], 0};
+            md->cross_push[w->link[c] - base] = (struct push){w->fx[c], w->fy[c]};
+            if (md->turns) md->cross_twist[w->link[c] - base] = w->ft[c];
         }
     }
     md->sums[t] = sums;
 }
 
-static void add_cross(struct md *md, uint32_t t, struct push *pushes)
+static void add_cross(struct md *md, uint32_t t, struct forces forces)
 {
     const struct strip *strip = &md->strips[t];
     const uint32_t base = md->link_count - md->cross_count;
     for (uint32_t k = strip->cross_first; k < strip->cross_last; k++) {
         const struct push *force = &md->cross_push[k - base];
-        struct push *push = &pushes[md->links[k].i - strip->first];
-        push->fx += force->fx;
-        push->fy += force->fy;
-        push->ft += force->ft;
+        const uint32_t i = md->links[k].i;
+        forces.pushes[i].fx += force->fx;
+        forces.pushes[i].fy += force->fy;
+        if (md->turns) forces.twists[i] += md->cross_twist[k - base];
     }
     for (uint32_t in = strip->in_first; in < strip->in_last; in++) {
-        const uint32_t k = md->incoming[in];
+        const uint32_t k = md->incoming[in], j = md->links[k].j & LINK_INDEX;
         const struct push *force = &md->cross_push[k - base];
-        struct push *push = &pushes[(md->links[k].j & LINK_INDEX) - strip->first];
-        push->fx -= force->fx;
-        push->fy -= force->fy;
-        push->ft += force->ft;
+        forces.pushes[j].fx -= force->fx;
+        forces.pushes[j].fy -= force->fy;
+        if (md->turns) forces.twists[j] += md->cross_twist[k - base];
     }
 }
 
-FORCE_INLINE void scatter(const struct md_window *w, struct push *pushes, bool rotates)
+FORCE_INLINE void scatter(const struct md_window *w, struct forces forces, bool rotates)
 {
     for (uint32_t c = 0; c < w->count; c++) {
-        struct push *a = &pushes[w->i[c]], *b = &pushes[w->j[c]];
+        struct push *a = &forces.pushes[w->i[c]], *b = &forces.pushes[w->j[c]];
         a->fx += w->fx[c];
         a->fy += w->fy[c];
         b->fx -= w->fx[c];
         b->fy -= w->fy[c];
         if (rotates) {
-            a->ft += w->ft[c];
-            b->ft += w->ft[c];
+            forces.twists[w->i[c]] += w->ft[c];
+            forces.twists[w->j[c]] += w->ft[c];
         }
     }
 }
 
-static void sweep(struct md *md, uint32_t t, struct push *pushes, struct md_window *w)
+/* `forces` are those of the strip, which count from its first grain. */
+static void sweep(struct md *md, uint32_t t, struct forces forces, struct md_window *w)
 {
     const struct strip *strip = &md->strips[t];
-    const unsigned form = (md->law.tangential ? ROTATES : 0) | (md->gears ? GEAR : 0);
-    if (md->wall_link_count > 0) md_walls_push(md, t, pushes);
+    const unsigned form = form_of(md);
+    if (md->wall_link_count > 0) md_walls_push(md, t, forces.pushes, forces.twists);
     /* Added up here and not in place: neighbouring strips share a line of the cache. */
     struct strip_sums sums = md->sums[t];
-    if (md->cross_count > 0) add_cross(md, t, pushes);
+    forces.pushes -= strip->first;
+    if (md->turns) forces.twists -= strip->first;
+    if (md->cross_count > 0) add_cross(md, t, forces);
     uint32_t done = strip->first;
-    int64_t fastest = 0;
-    struct push *const from_zero = pushes - strip->first;
+    uint64_t fastest = 0;
     for (uint32_t k = strip->link_first; k < strip->link_last;) {
         const uint32_t left = strip->link_last - k, last = k + (left < WINDOW ? left : WINDOW);
         md_pairs_window(md, k, last, w, &sums);
-        if (form & ROTATES) scatter(w, from_zero, true);
-        else scatter(w, from_zero, false);
+        if (form & ROTATES) scatter(w, forces, true);
+        else scatter(w, forces, false);
         k = last;
         const uint32_t next = k < strip->link_last ? md->links[k].i : strip->last;
-        fastest = move_grains(form, md, from_zero + done, done, next, fastest);
+        fastest = move_grains(form, md, forces, done, next, fastest);
         done = next;
     }
-    fastest = move_grains(form, md, from_zero + done, done, strip->last, fastest);
+    fastest = move_grains(form, md, forces, done, strip->last, fastest);
     memcpy(&sums.speed2_max, &fastest, sizeof fastest);
     md->sums[t] = sums;
 }
@@ -259,7 +284,8 @@ bool md_step_take(struct md *md)
 #pragma omp parallel num_threads(md->thread_count) if (strips > 1)
     {
         struct md_window w;
-        struct push *pushes = md->pushes + (size_t)omp_get_thread_num() * md->strip_room;
+        const size_t room = (size_t)omp_get_thread_num() * md->strip_room;
+        const struct forces forces = {md->pushes + room, md->turns ? md->twists + room : NULL};
         if (md->gears) {
 #pragma omp for schedule(dynamic, 1)
             for (uint32_t t = 0; t < strips; t++) predict_gear(md, t);
@@ -267,10 +293,11 @@ bool md_step_take(struct md *md)
 #pragma omp for schedule(dynamic, 1)
         for (uint32_t t = 0; t < strips; t++) push_cross(md, t, &w);
 #pragma omp for schedule(dynamic, 1)
-        for (uint32_t t = 0; t < strips; t++) sweep(md, t, pushes, &w);
+        for (uint32_t t = 0; t < strips; t++) sweep(md, t, forces, &w);
     }
     if (!md->gears) md->steps_here++;
     md->steps++;
+    md->some_fresh = false;
     add_sums(md);
     if (!md_fault_check(md)) return false;
     /* Walls stand where the grains are, for the next forces and for whoever looks before them. */
@@ -287,7 +314,10 @@ void md_step_rescale(struct md *md, double dt_before)
         struct half *h = &md->halves[i];
         h->hx = g->ux + q * (h->hx - g->ux);
         h->hy = g->uy + q * (h->hy - g->uy);
-        h->hrim = g->rim + q * (h->hrim - g->rim);
+        if (md->turns) {
+            const double rim = md->traits[i].rim;
+            md->turns[i].hrim = rim + q * (md->turns[i].hrim - rim);
+        }
         if (!md->gears) continue;
         struct gear *d = &md->gears[i];
         const double q2 = q * q, q3 = q2 * q, q4 = q3 * q, q5 = q4 * q;

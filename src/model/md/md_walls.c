@@ -55,11 +55,12 @@ double md_walls_speed(const struct md *md)
 }
 
 /* Is a grain at this place near the wall's image? */
-static bool is_near(const struct md *md, uint32_t w, uint32_t image, const struct grain *g)
+static bool is_near(const struct md *md, uint32_t w, uint32_t image, uint32_t i)
 {
+    const struct grain *g = &md->grains[i];
     const struct wall_nearest nearest = wall_nearest(&md->walls_now[w],
         g->x - md->image_x[image], g->y - md->image_y[image]);
-    return nearest.distance < g->radius + md->skin;
+    return nearest.distance < md_radius(md, i) + md->skin;
 }
 
 /* Visits grains of the cells within `box`, asking each cell first whether the wall is near. */
@@ -88,7 +89,7 @@ static bool list_wall(struct md *md, uint32_t w, uint32_t image)
             const double y = cells.y0 + (cy + 0.5) / cells.per_y - iy;
             if (wall_nearest(wall, x, y).distance > half + margin) continue;
             for (uint32_t i = first; i < last; i++) {
-                if (!is_near(md, w, image, &md->grains[i])) continue;
+                if (!is_near(md, w, image, i)) continue;
                 if (md->wall_link_count == md->wall_link_max) return false;
                 md->wall_links_old[md->wall_link_count++] =
                     (struct wall_link){.grain = i, .wall = w, .image = image};
@@ -180,11 +181,14 @@ static bool stands_back(const struct md *md, const struct wall_link *links,
     return false;
 }
 
-static void wall_force(const struct md *md, const struct wall_link *link, const struct grain *g,
-                       double spring, double dt, struct md_wall_touch *touch)
+static void wall_force(const struct md *md, const struct wall_link *link, double spring,
+                       double dt, struct md_wall_touch *touch)
 {
     const struct wall *wall = &md->walls_now[link->wall];
-    const struct md_pair_law *pair = md_pair_law(md, g->species, wall->species);
+    const uint32_t i = link->grain;
+    const struct grain *g = &md->grains[i];
+    const double own = md_radius(md, i);
+    const struct md_pair_law *pair = md_pair_law(md, md->tags[i].species, wall->species);
     const double nx = touch->nearest.nx, ny = touch->nearest.ny;
     double ux = g->ux - wall->vx, uy = g->uy - wall->vy;
     if (wall->surface_speed != 0) {
@@ -202,10 +206,11 @@ static void wall_force(const struct md *md, const struct wall_link *link, const 
         uy -= wall->surface_speed * ty;
     }
     const double radius = wall->shape == WALL_DISC
-                        ? g->radius * wall->radius / (g->radius + wall->radius) : g->radius;
+                        ? own * wall->radius / (own + wall->radius) : own;
     const struct md_touch contact = {
         .overlap = touch->overlap, .closing = -(ux * nx + uy * ny),
-        .slip = -ux * ny + uy * nx - touch->lever * g->rim, .mass = 1 / g->inverse_mass,
+        .slip = -ux * ny + uy * nx - touch->lever * md_rim(md, i),
+        .mass = 1 / md_inverse_mass(md, i),
         .radius = radius,
         .spring = spring, .dt = dt,
     };
@@ -223,6 +228,7 @@ void md_walls_touch(const struct md *md, uint32_t first, uint32_t last, double d
 {
     const struct wall_link *links = &md->wall_links[first];
     const struct grain *g = &md->grains[links[0].grain];
+    const double radius = md_radius(md, links[0].grain);
     const uint32_t count = last - first;
     for (uint32_t k = 0; k < count; k++) {
         const uint32_t w = links[k].wall, image = links[k].image;
@@ -230,8 +236,8 @@ void md_walls_touch(const struct md *md, uint32_t first, uint32_t last, double d
         if (!md->wall_here[w]) continue;
         out[k].nearest = wall_nearest(&md->walls_now[w], g->x - md->image_x[image],
                                       g->y - md->image_y[image]);
-        out[k].overlap = g->radius - out[k].nearest.distance;
-        out[k].lever = out[k].nearest.distance / g->radius;
+        out[k].overlap = radius - out[k].nearest.distance;
+        out[k].lever = out[k].nearest.distance / radius;
     }
     for (uint32_t k = 0; k < count; k++) {
         out[k].counts = out[k].overlap > 0
@@ -241,17 +247,18 @@ void md_walls_touch(const struct md *md, uint32_t first, uint32_t last, double d
         if (!out[k].counts) continue;
         const double spring = links[k].touches || !md->law.spring ? links[k].spring
                             : inherited_spring(md, links, out, count, k);
-        wall_force(md, &links[k], g, spring, dt, &out[k]);
+        wall_force(md, &links[k], spring, dt, &out[k]);
     }
 }
 
-static void add_to_body(struct md *md, uint32_t t, const struct grain *g,
-                        const struct wall_link *link, const struct md_wall_touch *touch)
+static void add_to_body(struct md *md, uint32_t t, const struct wall_link *link,
+                        const struct md_wall_touch *touch)
 {
+    const struct grain *g = &md->grains[link->grain];
     const struct wall *wall = &md->walls_now[link->wall];
     if (wall->body == WALL_NONE) return;
     struct tally_body *sum = &md->body_sums[t * md->scene->obstacle_count + wall->body];
-    const double reach = g->radius - touch->overlap;
+    const double reach = md_radius(md, link->grain) - touch->overlap;
     const double x = g->x - md->image_x[link->image] - reach * touch->nearest.nx;
     const double y = g->y - md->image_y[link->image] - reach * touch->nearest.ny;
     const double *center = md->scene->obstacles[wall->body].center;
@@ -262,7 +269,7 @@ static void add_to_body(struct md *md, uint32_t t, const struct grain *g,
     sum->contacts += !link->touches;
 }
 
-void md_walls_push(struct md *md, uint32_t t, struct push *pushes)
+void md_walls_push(struct md *md, uint32_t t, struct push *pushes, double *twists)
 {
     const struct strip *strip = &md->strips[t];
     struct md_wall_touch touches[GROUP_MAX];
@@ -272,17 +279,16 @@ void md_walls_push(struct md *md, uint32_t t, struct push *pushes)
         while (last < strip->wall_last && md->wall_links[last].grain == i
                && last - k < GROUP_MAX) last++;
         md_walls_touch(md, k, last, md->dt, touches);
-        const struct grain *g = &md->grains[i];
         for (uint32_t o = 0; k < last; k++, o++) {
             struct wall_link *link = &md->wall_links[k];
             if (touches[o].counts) {
                 struct push *push = &pushes[i - strip->first];
                 push->fx += touches[o].fx;
                 push->fy += touches[o].fy;
-                push->ft -= touches[o].lever * touches[o].tangential;
+                if (twists) twists[i - strip->first] -= touches[o].lever * touches[o].tangential;
                 md->sums[t].tangential += md->law.tangential;
                 if (touches[o].overlap > md->suspect_overlap) md->sums[t].suspect++;
-                add_to_body(md, t, g, link, &touches[o]);
+                add_to_body(md, t, link, &touches[o]);
                 if (!link->touches && md->collisions) md->collisions[i]++;
                 link->spring = md->law.spring ? touches[o].spring : 0;
             } else {

@@ -16,8 +16,9 @@ double md_walls_speed(const struct md *md);
 /* Lists the grains near each wall; `order` gives old indices by new.  False: no room. */
 bool md_walls_list(struct md *md, const uint32_t *order);
 
-/* Adds the forces on the grains of strip t to `pushes` (indexed from the strip's first grain). */
-void md_walls_push(struct md *md, uint32_t t, struct push *pushes);
+/* Adds the forces on the grains of strip t to `pushes`, on their rims to `twists` if that is there
+ * (both indexed from the strip's first grain). */
+void md_walls_push(struct md *md, uint32_t t, struct push *pushes, double *twists);
 
 /* One touch of a grain with a wall, for looking. */
 struct md_wall_touch {
