@@ -10,11 +10,6 @@ import shutil
 import struct
 import subprocess
 
-try:
-    import h5py
-except ImportError:
-    h5py = None
-
 # Discs that fall on an obstacle; friction, a phase that changes a key, and a gate that opens.
 DISCS = """
 model = "md";
@@ -80,11 +75,15 @@ CASES = [
 ]
 
 
-def cases(program):
-    """CASES; where the program has HDF5, one of them with a trajectory."""
+def has_hdf5(program):
     told = subprocess.run([program, "version", "--json"], capture_output=True, text=True,
                           check=True).stdout
-    if "hdf5" not in json.loads(told):
+    return "hdf5" in json.loads(told)
+
+
+def cases(program):
+    """CASES; where the program has HDF5, one of them with a trajectory."""
+    if not has_hdf5(program):
         return CASES
     return [(name, scene, options + ["-s", "output.trajectory=0.05"])
             if name == "md-hertz-verlet" else (name, scene, options)
@@ -137,26 +136,7 @@ def _log(data):
     return [row[:at] + row[at + 1:] for row in rows]
 
 
-def _trajectory(path):
-    """Every attribute and number of an HDF5 file; where it lies in the file is the library's
-    affair, which has holes where a killed run had begun a frame."""
-    found = {}
-
-    def take(name, item):
-        values = item[()].tobytes() if isinstance(item, h5py.Dataset) else None
-        shape = (item.shape, str(item.dtype)) if isinstance(item, h5py.Dataset) else None
-        found[name] = (shape, values, {k: repr(v) for k, v in item.attrs.items()})
-
-    with h5py.File(path, "r") as file:
-        file.visititems(take)
-    return found
-
-
 def _contents(path):
-    if path.endswith(".h5") and h5py:
-        return _trajectory(path)
-    if path.endswith(".h5"):
-        return os.path.getsize(path) > 0
     with open(path, "rb") as file:
         data = file.read()
     name = os.path.basename(path)

@@ -7,6 +7,8 @@
  *     SHIM_NO_LIBRARY=WORD   no library whose name holds WORD can be opened
  *     SHIM_CLOCK=1           the date jumps by decades with every look at it
  *
+ * What the program starts (ffmpeg, gnuplot, the runs of a sweep) is left alone.
+ *
  * Only calls from the program's own code count: what happens when Mesa or libconfig run out of
  * memory is not ours to decide.
  *
@@ -56,6 +58,7 @@ __attribute__((constructor)) static void begin(void)
     failing = number ? strtoul(number, NULL, 10) : 0;
     forever = getenv("SHIM_FOREVER") != NULL;
     jumps = getenv("SHIM_CLOCK") != NULL;
+    unsetenv("LD_PRELOAD");
     dl_iterate_phdr(find_program, NULL);
 }
 

@@ -30,6 +30,9 @@ NOT_REPRODUCED = {
     "stream-11": "gap",
     "stream-12": "gap",
 }
+# The quick form's obstacle is as small as the layer before it is deep.
+if MODE == "full":
+    del NOT_REPRODUCED["stream-8"]
 FEW = ["cooperative-4", "cooperative-8", "cooperative-9", "stream-7"]
 
 

@@ -110,10 +110,20 @@ CALL_CASES = [("late", rundir.DISCS_FILE, SHORT),
                                              "view.range=(0, 5)", "--model", "ed"])]
 
 
+# Of a trajectory the library writes many pieces a frame, and more grains than there were take more
+# room in it; nothing else is written, so that the calls are spent on it.
+GROWING = ("growing", "growing.cfg", ["--until", "0.12", "-s", "output.trajectory=0.01", "-s",
+                                      "output.checkpoint=0.03", "-s", "output.frames=0", "-s",
+                                      "output.maps=0", "-s", "phases=()"])
+
+
 def try_calls(folder, stride):
     failed = tried = 0
     count = os.path.join(folder, "count")
-    for case in CALL_CASES:
+    with open(os.path.join(folder, GROWING[1]), "w", encoding="utf-8") as out:
+        out.write(rundir.DISCS + "count_max = 900;\n"
+                  "sources = ({ position = (4.0, 11.4); rate = 300.0; });\n")
+    for case in CALL_CASES + ([GROWING] if rundir.has_hdf5(PROGRAM) else []):
         trial = Trial(folder, case)
         torn = os.path.join(folder, "torn")
         ended, call = 1, 1

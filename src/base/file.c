@@ -99,12 +99,14 @@ bool file_absent(const char *path, struct error *error)
         "overwrite it with --force, or name another place with -o", path);
 }
 
-void file_sync(const char *path)
+bool file_sync(const char *path)
 {
     const int file = open(path, O_RDONLY | O_CLOEXEC);
-    if (file < 0) return;
-    fsync(file);                /* what cannot be synced (some network disks) is on its own */
+    if (file < 0) return false;
+    /* What cannot be synced (some network disks) is on its own. */
+    const bool done = fsync(file) == 0 || errno == EINVAL;
     close(file);
+    return done;
 }
 
 bool file_make_directory(const char *path, struct error *error)

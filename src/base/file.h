@@ -45,8 +45,9 @@ bool file_exists(const char *path);
 /* True if there is no such file yet; else EXIT_USAGE, with --force and -o as the cure. */
 bool file_absent(const char *path, struct error *error);
 
-/* Brings a file that another program wrote, or the names in a directory, to the disk. */
-void file_sync(const char *path);
+/* Brings a file that another program or a library wrote, or the names in a directory, to the disk.
+ * False if it is not there, or the disk is full or broken. */
+bool file_sync(const char *path);
 
 /* Makes the directory and its parents; true if it is there already. */
 bool file_make_directory(const char *path, struct error *error);

@@ -5,7 +5,9 @@
 #include "cli/cli.h"
 #include "cli/opening.h"
 
+#include <poll.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,10 +42,31 @@ static void let_waiting_threads_sleep(char **arguments)
     if (setenv("OMP_WAIT_POLICY", "passive", 1) == 0) execv(program, arguments);
 }
 
+/* Whoever reads our output has seen enough: `sandreel scenes | head`. */
+static bool output_is_unwanted(void)
+{
+    struct pollfd output = {.fd = STDOUT_FILENO, .events = POLLOUT};
+    return poll(&output, 1, 0) == 1 && output.revents & POLLERR;
+}
+
+/* A run goes on when nobody reads what it says, and its own exit code comes first.  Else the end is
+ * that of every program whose reader left, without a word: by SIGPIPE, which shells call 141. */
+static int end(int code)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout)) return code;
+    if (output_is_unwanted()) {
+        if (code) return code;
+        signal(SIGPIPE, SIG_DFL);
+        raise(SIGPIPE);
+    }
+    fprintf(stderr, "sandreel: standard output could not be written\n");
+    return code ? code : EXIT_FAILED;
+}
+
 int main(int count, char **arguments)
 {
     let_waiting_threads_sleep(arguments);
-    signal(SIGPIPE, SIG_IGN);           /* a reader that ends early is an error like any other */
+    signal(SIGPIPE, SIG_IGN);           /* a reader that ends early ends no run */
     signal(SIGXFSZ, SIG_IGN);           /* and so is a file that grows too large */
     const char *word = count > 1 ? arguments[1] : "help";
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) word = "help";
@@ -64,7 +87,5 @@ int main(int count, char **arguments)
         code = command->carry_out(&options);
     }
     options_free(&options);
-    if (fflush(stdout) == 0 && !ferror(stdout)) return code;
-    fprintf(stderr, "sandreel: standard output could not be written\n");
-    return code ? code : EXIT_FAILED;
+    return end(code);
 }

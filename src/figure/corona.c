@@ -84,10 +84,11 @@ static bool snapshot(struct figure_job *job, bool flat, struct error *error)
     if (done) {
         const double slow = speed_before(&lab.footage.grains, &flow) / flow.speed;
         figure_hold(job, slow < 0.8, "grains before the obstacle are slowed down, to %.2f v", slow);
-        /* "Velocities are very small" there, in the paper; but a corona at rest needs
-         * a damping a hundred times that of Table I. */
+        /* "Velocities are very small" there, in the paper; but a corona at rest needs a damping a
+         * hundred times that of Table I.  A grain that meets a disc at the height y keeps at
+         * most the part along its face, v |y| / R: 0.25 v on average; before a flat face, 0. */
         if (slow > 0.2) {
-            figure_miss(job, slow > 0.3, "the paper's corona almost at rest is not reproduced");
+            figure_miss(job, true, "the paper's corona almost at rest is not reproduced");
         }
         done = strip_add(&strip, &lab, error) && picture(job, &strip, "", error);
     }

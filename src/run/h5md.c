@@ -9,16 +9,16 @@
 
 #ifdef SANDREEL_HDF5
 
+#include "base/file.h"
 #include "run/build.h"
 #include "run/h5md_layout.h"
 
-#include <fcntl.h>
+#include <errno.h>
 #include <hdf5.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum {
     ELEMENT_position, ELEMENT_velocity,
@@ -43,7 +43,7 @@ enum {
 };
 
 struct h5md {
-    char    path[4096];
+    char    path[FILE_PATH_MAX + 16];
     hid_t   file, group, step, time, values[ELEMENTS];
     hsize_t frames, rows;       /* written; room for grains */
     double *pairs;              /* x and y in turn */
@@ -286,16 +286,7 @@ struct h5md *h5md_create(const char *path, const struct scene *scene, struct err
     return ready(h5md, "cannot create this trajectory", error);
 }
 
-/* ---- going on ------------------------------------------------------------------------------ */
-
-/* Frames and rows that a dataset holds. */
-static void extent(struct h5md *h5md, hid_t set, hsize_t size[3])
-{
-    const hid_t space = H5Dget_space(set);
-    size[0] = size[1] = 0;
-    note(h5md, H5Sget_simple_extent_dims(space, size, NULL));
-    H5Sclose(space);
-}
+/* ---- frames -------------------------------------------------------------------------------- */
 
 static void set_extent(struct h5md *h5md, hsize_t frames)
 {
@@ -304,48 +295,6 @@ static void set_extent(struct h5md *h5md, hsize_t frames)
     note(h5md, H5Dset_extent(h5md->time, size));
     for (int e = 0; e < ELEMENTS; e++) note(h5md, H5Dset_extent(h5md->values[e], size));
 }
-
-static void open_elements(struct h5md *h5md)
-{
-    char name[80];
-    h5md->group = note(h5md, H5Gopen2(h5md->file, "particles/all", H5P_DEFAULT));
-    h5md->step = note(h5md, H5Dopen2(h5md->group, "position/step", H5P_DEFAULT));
-    h5md->time = note(h5md, H5Dopen2(h5md->group, "position/time", H5P_DEFAULT));
-    for (int e = 0; e < ELEMENTS; e++) {
-        snprintf(name, sizeof name, "%s/value", elements[e].name);
-        h5md->values[e] = note(h5md, H5Dopen2(h5md->group, name, H5P_DEFAULT));
-    }
-}
-
-struct h5md *h5md_resume(const char *path, uint64_t frames, struct error *error)
-{
-    struct h5md *h5md = take(path, error);
-    if (!h5md) return NULL;
-    const hid_t how = access_list();
-    /* A writer that was killed has left its mark in the file; this is how h5clear takes it out. */
-    const hbool_t clear = true;
-    H5Pset(how, "clear_status_flags", &clear);
-    h5md->file = note(h5md, H5Fopen(path, H5F_ACC_RDWR, how));
-    H5Pclose(how);
-    if (!h5md->failed) open_elements(h5md);
-    hsize_t size[3] = {0};
-    /* Killed within a frame, the datasets may be of different length: the shortest counts. */
-    h5md->frames = frames;
-    for (int e = 0; e < ELEMENTS + 2 && !h5md->failed; e++) {
-        const hid_t sets[2] = {h5md->step, h5md->time};
-        extent(h5md, e < ELEMENTS ? h5md->values[e] : sets[e - ELEMENTS], size);
-        if (e < ELEMENTS && size[1] > h5md->rows) h5md->rows = size[1];
-        if (size[0] >= frames) continue;
-        error_set(error, "%s: %llu frames, but the checkpoint knows %llu; the trajectory cannot be "
-                  "continued", path, (unsigned long long)size[0], (unsigned long long)frames);
-        h5md_close(h5md, NULL);
-        return NULL;
-    }
-    if (!h5md->failed) set_extent(h5md, frames);
-    return ready(h5md, "cannot go on with this trajectory", error);
-}
-
-/* ---- frames -------------------------------------------------------------------------------- */
 
 /* Writes `count` rows of the last frame. */
 static void write_rows(struct h5md *h5md, int element, hsize_t count, const void *values)
@@ -405,10 +354,17 @@ bool h5md_add(struct h5md *h5md, const struct grains *grains, uint64_t steps, st
 bool h5md_sync(struct h5md *h5md, struct error *error)
 {
     note(h5md, H5Fflush(h5md->file, H5F_SCOPE_LOCAL));
-    const int descriptor = open(h5md->path, O_RDONLY);
-    if (descriptor < 0 || fsync(descriptor) != 0) h5md->failed = true;
-    if (descriptor >= 0) close(descriptor);
+    if (!file_sync(h5md->path)) h5md->failed = true;
     return !h5md->failed || fail(h5md, "writing stopped", error);
+}
+
+bool h5md_rename(struct h5md *h5md, const char *path, struct error *error)
+{
+    if (rename(h5md->path, path) != 0) {
+        return error_set(error, "%s: cannot name this file: %s", path, strerror(errno));
+    }
+    snprintf(h5md->path, sizeof h5md->path, "%s", path);
+    return true;
 }
 
 bool h5md_close(struct h5md *h5md, struct error *error)
@@ -443,14 +399,6 @@ struct h5md *h5md_create(const char *path, const struct scene *scene, struct err
     return NULL;
 }
 
-struct h5md *h5md_resume(const char *path, uint64_t frames, struct error *error)
-{
-    (void)path;
-    (void)frames;
-    h5md_available(error);
-    return NULL;
-}
-
 bool h5md_add(struct h5md *h5md, const struct grains *grains, uint64_t steps, struct error *error)
 {
     (void)h5md;
@@ -460,6 +408,13 @@ bool h5md_add(struct h5md *h5md, const struct grains *grains, uint64_t steps, st
 }
 
 bool h5md_sync(struct h5md *h5md, struct error *error) { return !h5md || h5md_available(error); }
+
+bool h5md_rename(struct h5md *h5md, const char *path, struct error *error)
+{
+    (void)h5md;
+    (void)path;
+    return h5md_available(error);
+}
 
 bool h5md_close(struct h5md *h5md, struct error *error) { return !h5md || h5md_available(error); }
 

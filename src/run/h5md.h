@@ -23,14 +23,19 @@ bool h5md_available(struct error *error);
 /* A new file, written under this name at once. */
 struct h5md *h5md_create(const char *path, const struct scene *scene, struct error *error);
 
-/* Goes on with an earlier file, cut back to its first `frames` frames. */
-struct h5md *h5md_resume(const char *path, uint64_t frames, struct error *error);
+/* Goes on with an earlier file of the same scene, cut back to its first `frames` frames: it is
+ * replaced by a file that holds just them, or stays as it was (h5md_resume.c). */
+struct h5md *h5md_resume(const char *path, uint64_t frames, const struct scene *scene,
+                         struct error *error);
 
 /* The grains must be sorted (grains_sort). */
 bool h5md_add(struct h5md *h5md, const struct grains *grains, uint64_t steps, struct error *error);
 
 /* Brings all frames to the disk. */
 bool h5md_sync(struct h5md *h5md, struct error *error);
+
+/* Gives the file another name; h5md writes on. */
+bool h5md_rename(struct h5md *h5md, const char *path, struct error *error);
 
 /* Closes and frees; false if what was left could not be written.  NULL is harmless. */
 bool h5md_close(struct h5md *h5md, struct error *error);

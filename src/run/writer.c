@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "measure/csv.h"
 #include "run/folder.h"
+#include "run/h5md_pack.h"
 #include "run/look.h"
 #include "run/recall.h"
 
@@ -166,7 +167,8 @@ bool writer_resume(struct writer *writer, struct error *error)
     if (writer->schedules[WRITER_TRAJECTORY].interval > 0) {
         char path[FILE_PATH_MAX];
         writer->h5md = h5md_resume(folder_path(path, writer->directory, "trajectory.h5"),
-                                   writer->schedules[WRITER_TRAJECTORY].next, error);
+                                   writer->schedules[WRITER_TRAJECTORY].next,
+                                   writer->sim->scene, error);
         if (!writer->h5md) return false;
     }
     for (uint64_t k = 0; writer->draws_later && k < frames; k++) {
@@ -357,8 +359,10 @@ bool writer_finish(struct writer *writer, double wall, bool (*step)(void *, uint
     done = done && serve_histograms(writer, error) && writer_sync(writer, error)
         && save_screens(writer, error);
     if (done && writer->h5md) {
+        char path[FILE_PATH_MAX];
         done = h5md_close(writer->h5md, error);
         writer->h5md = NULL;
+        done = done && h5md_pack(folder_path(path, writer->directory, "trajectory.h5"), error);
     }
     if (done && writer->movie_late) done = movie_from_frames(writer, error);
     if (done && writer->movie) {

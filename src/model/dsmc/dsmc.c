@@ -8,6 +8,7 @@
 #include "model/dsmc/dsmc_flow.h"
 #include "model/dsmc/dsmc_look.h"
 #include "model/dsmc/dsmc_move.h"
+#include "model/dsmc/dsmc_sort.h"
 #include "model/dsmc/dsmc_walls.h"
 #include "model/stepping.h"
 
@@ -78,14 +79,11 @@ static bool allocate(struct dsmc *dsmc)
         && arena_array(arena, &dsmc->tags, n)
         && arena_array(arena, &dsmc->spins, dsmc->effects & EFFECT_ROTATION ? n : 0)
         && arena_array(arena, &dsmc->contacts, dsmc->effects & EFFECT_COLLISION_RATE ? n : 0)
-        && arena_array(arena, &dsmc->first, (size_t)dsmc->cells + 1)
-        && arena_array(arena, &dsmc->places, (size_t)dsmc->cells * dsmc->threads)
         && arena_array(arena, &dsmc->sums, dsmc->threads)
-        && arena_array(arena, &dsmc->load, dsmc->full ? dsmc->cells : 0)
-        && arena_array(arena, &dsmc->shares, dsmc->full ? dsmc->threads + 1 : 0)
         && arena_array(arena, &dsmc->cursors, scene->source_count)
         && arena_array(arena, &dsmc->batch, dsmc->batch_max)
-        && dsmc_walls_create(dsmc) && tally_create(&dsmc->tally, scene, arena)
+        && dsmc_sort_create(dsmc) && dsmc_walls_create(dsmc)
+        && tally_create(&dsmc->tally, scene, arena)
         && arena_array(arena, &dsmc->impacts, (size_t)dsmc->tally.impact.bins * dsmc->threads);
 }
 
@@ -230,9 +228,9 @@ static uint64_t dsmc_memory(const struct scene *scene)
                        + (scene->effects & EFFECT_ROTATION ? sizeof(float) : 0)
                        + (scene->effects & EFFECT_COLLISION_RATE ? sizeof(struct dsmc_contacts)
                                                                  : 0);
-    const double cell = sizeof(uint32_t) * (1 + (double)omp_get_max_threads())
-                      + (s.method == DSMC_HSMC ? sizeof(uint16_t) : 0);
-    return (uint64_t)((double)grain * room_for(scene, &s) + cell * cells);
+    const double grains = room_for(scene, &s);
+    return (uint64_t)((double)grain * grains
+                      + dsmc_sort_memory(grains, cells, height / s.cell, omp_get_max_threads()));
 }
 
 const struct model model_dsmc = {

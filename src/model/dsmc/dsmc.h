@@ -64,6 +64,18 @@ struct dsmc_sums {              /* of one thread in one step */
     char apart[24];             /* on its own cache line */
 };
 
+/* What one thread of a team does in a step: a run of blocks of cells, and the grains in them. */
+struct dsmc_share {
+    uint32_t block, block_end;
+    uint32_t from, cells;       /* its cells, in this grid and in the next */
+    uint32_t first, last;       /* its grains: first .. last - 1 */
+    uint32_t gone, gone_max;    /* its grains that arrived in cells of other shares */
+    uint32_t *away, *places;    /* [gone] those cells, and what place the sort gives them */
+    uint32_t sum;               /* grains that its cells will hold */
+    bool complete;              /* do its counts hold all grains, from wherever? */
+    char apart[64];             /* the next one begins on another cache line */
+};
+
 /* Walls near each cell of a grid that stands still. */
 struct dsmc_walls {
     uint32_t nx, ny;
@@ -105,15 +117,15 @@ struct dsmc {
     struct dsmc_axis next_ax, next_ay;          /* and that of the next step */
     uint32_t cells, blocks;
     uint32_t *first;            /* [cell + 1]: where each cell's grains begin */
-    uint32_t *places;           /* [thread][cell] */
+    uint32_t *load;             /* grains in each cell of the next grid, while they move */
+    uint32_t *load_apart;       /* where that lies; NULL: in `sorted`, which then is free */
+    struct dsmc_share *shares;  /* [thread] */
     uint32_t threads;
     struct dsmc_sums *sums;     /* [thread] */
     double *impacts;            /* [thread][bin]; NULL if nobody asks */
     struct dsmc_walls walls;
 
     uint32_t full;              /* hsmc: grains that fill a cell; 0: no limit */
-    uint16_t *load;             /* hsmc: grains in each cell while they move */
-    uint32_t *shares;           /* hsmc: [thread + 1] first grain of each thread's share */
     bool     unsorted;          /* hsmc: some grain has changed its cell in this step */
 
     struct source_cursor *cursors;

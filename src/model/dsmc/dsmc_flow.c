@@ -130,7 +130,7 @@ static bool let_batch_in(struct dsmc *dsmc, uint32_t s, double t)
         if (dsmc->full > 0) {
             const uint32_t cell = dsmc_cell(&dsmc->ax, &dsmc->ay, (float)(grain.x - scene->box[0]),
                                             (float)(grain.y - scene->box[1]));
-            dsmc->load[cell] = (uint16_t)(dsmc->load[cell] + weight);
+            dsmc->load[cell] += weight;
         }
         dsmc->tally.mass_in += weight * dsmc->mass;
         dsmc->grains_in += weight;

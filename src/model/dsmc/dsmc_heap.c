@@ -31,7 +31,7 @@ static const double slow = 0.5;                 /* relative speed at which grain
 
 enum {
     STRIPE = 12,                /* rows: more than 2 (FAR_ROWS + 2), what two stripes reach */
-    FAR_ROWS = 3                /* that walls may push a grain in a step; else it stays */
+    FAR_ROWS = DSMC_HEAP_ROWS   /* that walls may push a grain in a step; else it stays */
 };
 
 struct sweep {
@@ -40,7 +40,7 @@ struct sweep {
     struct dsmc_finder finder;
     float gx, gy, dt, way_max, slow2, roll;
     int   down;                 /* row step along gravity, 0: none */
-    uint32_t nx, ny, team;
+    uint32_t nx, ny;
     uint64_t key;               /* of the random numbers of this step */
     uint32_t block;             /* of this stripe: where impulses on obstacles are summed up */
     uint64_t collisions, rejected;
@@ -260,12 +260,6 @@ static void change_cell(struct sweep *sweep, uint32_t i, struct dsmc_grain befor
     dsmc->load[cell]--;
     dsmc->load[to]++;
     sweep->moved = true;
-    if (sweep->team == 1) return;
-    uint32_t owner = 0;
-    while (i >= dsmc->shares[owner + 1]) owner++;
-    uint32_t *places = dsmc->places + (size_t)owner * dsmc->cells;
-    places[cell]--;
-    places[to]++;
 }
 
 FORCE_INLINE void move_grain(struct sweep *sweep, uint32_t i, bool walls, bool shear)
@@ -376,18 +370,10 @@ static struct sweep sweep_of(struct dsmc *dsmc)
         .nx = dsmc->ax.cells, .ny = dsmc->ay.cells};
 }
 
-void dsmc_heap_load(struct dsmc *dsmc, uint32_t t, uint32_t team, uint32_t from, uint32_t to)
+void dsmc_heap_load(struct dsmc *dsmc, uint32_t t)
 {
-    uint32_t *places = dsmc->places + (size_t)t * dsmc->cells;
-    const uint32_t begin = dsmc_collide_cell(dsmc, from), end = dsmc_collide_cell(dsmc, to);
-    for (uint32_t c = begin; c < end; c++) {
-        dsmc->load[c] = (uint16_t)(dsmc->first[c + 1] - dsmc->first[c]);
-    }
-    dsmc->shares[t] = dsmc->first[begin];
-    if (t + 1 == team) dsmc->shares[team] = dsmc->count;
-    if (team == 1) return;
-    memset(places, 0, dsmc->cells * sizeof *places);
-    for (uint32_t c = begin; c < end; c++) places[c] = dsmc->load[c];
+    const uint32_t begin = dsmc->shares[t].from, end = begin + dsmc->shares[t].cells;
+    for (uint32_t c = begin; c < end; c++) dsmc->load[c] = dsmc->first[c + 1] - dsmc->first[c];
 }
 
 void dsmc_heap_sweep(struct dsmc *dsmc, struct dsmc_sums *sums)
@@ -397,7 +383,6 @@ void dsmc_heap_sweep(struct dsmc *dsmc, struct dsmc_sums *sums)
     const uint32_t shift = (uint32_t)rng_u64(&rng), turn = (uint32_t)rng_u64(&rng) & 1;
     const uint32_t count = stripe_count(dsmc, shift);
     const bool freely = !dsmc->walls.first && !(dsmc->effects & EFFECT_SHEAR);
-    sweep.team = (uint32_t)omp_get_num_threads();
     sweep.key = rng.state;
     sweep.impacts = sums->impacts;
     for (uint32_t half = 0; half < 2; half++) {

@@ -7,9 +7,11 @@
 
 #include "model/dsmc/dsmc.h"
 
-/* Counts the grains in the cells of thread t's share, its blocks `from` .. `to` - 1.  A sweep keeps
- * these counts up to date, `load` and (in a team) each thread's `places`. */
-void dsmc_heap_load(struct dsmc *dsmc, uint32_t t, uint32_t team, uint32_t from, uint32_t to);
+enum { DSMC_HEAP_ROWS = 3 };    /* that a grain may go in a step, pushed by a wall */
+
+/* Counts the grains in the cells of thread t's share; a sweep keeps these counts, `load`, up to
+ * date. */
+void dsmc_heap_load(struct dsmc *dsmc, uint32_t t);
 
 /* Moves all grains by one step, once all cells are counted.  Every thread of a team calls it, with
  * its own sums. */

@@ -45,6 +45,11 @@ static const double restitution_default = 0.8;  /* where only stiffness and damp
 static const double cells_per_step = 0.1;       /* that the fastest grain goes */
 static const double cells_per_step_high = 0.5;  /* more than this is told */
 
+/* Grains that a heap of hsmc carries off in sqrt(d/g).  On each of two flanks one layer of cells
+ * goes, two grains abreast a diameter long, at one diameter in that time at most: four.  The heap
+ * of scenes/heap.cfg, once it is as high as its source, takes 3.2. */
+static const double shed_max = 3;
+
 static double box_width(const struct scene *s) { return s->box[2] - s->box[0]; }
 static double box_height(const struct scene *s) { return s->box[3] - s->box[1]; }
 
@@ -109,6 +114,24 @@ static void warn_once(struct findings *findings, const struct scene *scene, cons
     findings_tell(findings, scene, FINDING_WARNING, "dsmc.method", "%s", text);
 }
 
+/* What piles up faster than it can roll down: the heap grows steep, and in the end up to the
+ * source, which then waits. */
+static void judge_pour(struct scene *scene, struct findings *findings)
+{
+    const double fall = sqrt(hypot(scene->gravity[0], scene->gravity[1])
+                             / (2 * scene->radius_mean));
+    for (uint32_t k = 0; fall > 0 && k < scene->source_count; k++) {
+        const struct source *source = &scene->sources[k];
+        if (source->kind != SOURCE_POINT || source->rate <= shed_max * fall) continue;
+        char place[64];
+        snprintf(place, sizeof place, "sources.[%u].rate", k);
+        findings_tell(findings, scene, FINDING_WARNING, place, "%g grains a time unit: of a heap "
+            "of hsmc only the topmost cells roll, and carry off %.3g; it grows steep, up to the "
+            "source, which then waits; use at most that and a longer run, or md", source->rate,
+            shed_max * fall);
+    }
+}
+
 static void judge_heap(struct scene *scene, const struct dsmc_settings *settings,
                        struct findings *findings)
 {
@@ -122,7 +145,10 @@ static void judge_heap(struct scene *scene, const struct dsmc_settings *settings
             "by row, as there is room below: a block falls half as far as freely, and a neck lets "
             "out less; md and ed know better");
     }
-    if (settings->method == DSMC_HSMC) return;
+    if (settings->method == DSMC_HSMC) {
+        if (can_pile_up(scene)) judge_pour(scene, findings);
+        return;
+    }
     for (uint32_t s = 0; s < scene->source_count; s++) {
         if (scene->sources[s].above == 0) continue;
         char place[64];

@@ -68,8 +68,8 @@ struct ed_clock {
     int64_t  ahead_cells;       /* until then it is so many whole cells ahead */
 };
 
-/* So many events must bring the clock on by stuck_step.  Touching discs set in motion at one instant
- * have a few events each; a chain that collapses makes 1e5 between a handful of discs at once. */
+/* So many events must bring the clock on by stuck_step.  Touching discs that are set in motion at
+ * once have a few events each; a chain that collapses makes 1e5 among a handful of discs. */
 static inline uint64_t ed_stuck_events(uint32_t count) { return 100000 + 20ull * count; }
 
 /* Why the loop over events came back. */

@@ -143,8 +143,8 @@ bool md_fault_escaped(struct md *md)
         blame(md, i);
         snprintf(md->fault.text, sizeof md->fault.text, "t = %g: grain %u got through the border "
                  "to (%.6g, %.6g); it was too fast for the time step: make md.dt = %g smaller, "
-                 "or the grains stiffer (md.overlap)", md->fault.time, md->tags[i].id, g->x, g->y,
-                 md->dt);
+                 "or the grains stiffer (md.overlap)", md->fault.time, md->tags[i].id,
+                 g->x, g->y, md->dt);
         return false;
     }
     return true;
