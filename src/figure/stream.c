@@ -94,9 +94,10 @@ static bool radii(struct figure_job *job, bool flat, struct chart *chart, double
     return true;
 }
 
-/* The paper's slope of F(R_ob).  An independent program has 104(3)e3 dyn/cm between 1 and 1.5 cm, less
- * than the paper: the layer before a large obstacle shields it. */
-static void judge_slope(struct figure_job *job, const struct chart *chart, double slope, double noise)
+/* The paper's slope of F(R_ob).  An independent program has 104(3)e3 dyn/cm between 1 and 1.5 cm,
+ * less than the paper: the layer before a large obstacle shields it. */
+static void judge_slope(struct figure_job *job, const struct chart *chart, double slope,
+                        double noise)
 {
     static const double paper = 111e3, between = 104e3, between_error = 3e3;
     if (fabs(slope - paper) <= doubt(job, paper, 2 * noise)) {
