@@ -207,9 +207,17 @@ static struct scene *scene_build(const struct scene_request *request,
 {
     struct scene *scene = scene_blank(request, source);
     if (!scene) return NULL;
+    const uint32_t count = findings->count, errors = findings->errors,
+                   warnings = findings->warnings;
     if (!build_tree(scene, request, source, phase, findings) || !parse_scene(scene, findings)) {
-        if (scene->arena.failed) findings_tell_at(findings, FINDING_ERROR, source->file, 0,
-                                                  "not enough memory to read this scene");
+        if (scene->arena.failed) {
+            /* What else seemed wrong is that a part of the scene is missing. */
+            findings->count = count;
+            findings->errors = errors;
+            findings->warnings = warnings;
+            findings_tell_at(findings, FINDING_ERROR, source->file, 0,
+                             "not enough memory to read this scene");
+        }
         scene_free(scene);
         return NULL;
     }
