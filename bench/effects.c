@@ -22,9 +22,6 @@ enum { KEYS_MAX = 48, KEY_LENGTH = 200, REPEATS = 7 };
 
 static const double warm_seconds = 0.2;         /* before the state is taken */
 static const double slice_seconds = 0.02;       /* of one measurement */
-/* Sums are taken in another order by hand: 1e-16 d, ten times more with each collision (the mean
- * way is that many radii), and about one collision a grain. */
-static const double apart_max = 1e-9;
 
 /* Keys that take an effect out, then keys that put it into the gas below; parted by ';', and * is
  * every species.  "": it cannot be taken out without another scene. */
@@ -332,20 +329,17 @@ static void begin_keys(struct keys *keys, const struct model *model)
     add_key(keys, text);
 }
 
-/* Soft discs alone have a kernel by hand; the row tells its share of the model's time. */
+/* The row of the kernel by hand tells its share of the model's time on the same gas. */
 static bool tell_stripped(const struct model *model,
                           void (*tell)(void *context, const struct effects_row *row),
                           void *context, struct error *error)
 {
     struct stripped_result result;
-    if (strcmp(model->name, "md") != 0) return true;
-    if (!stripped_measure(&result, error)) return false;
-    if (!(result.apart <= apart_max)) {
-        return error_set(error, "the kernel by hand moves a grain %g away from where md has it",
-                         result.apart);
-    }
+    const struct stripped_kernel *kernel = stripped_find(model->name);
+    if (!kernel) return true;
+    if (!stripped_measure(kernel, &result, error)) return false;
     const struct effects_row row = {.model = model->name, .work = model->work,
-        .name = "by hand", .seconds = result.by_hand, .share = result.by_hand / result.model,
+        .name = "by hand", .seconds = result.by_hand, .share = result.share,
         .bytes = result.by_hand_bytes};
     tell(context, &row);
     return true;

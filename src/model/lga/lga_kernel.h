@@ -27,17 +27,23 @@ INLINE void N(store)(uint64_t *words, vec bits) { *(vec *)words = bits; }
 /* xoshiro256++ of Blackman and Vigna (2018), a stream for each word of a block. */
 struct N(stream) { vec a[PARTS], b[PARTS], c[PARTS], d[PARTS]; };
 
+/* rng_mix of the words after the key, for many at once. */
+INLINE vec N(mixed)(uint64_t key, uint32_t first)
+{
+    vec z;
+    for (uint32_t l = 0; l < KERNEL_WIDTH; l++) z[l] = key + (first + l + 1) * 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+
 INLINE void N(seed)(struct N(stream) *s, uint64_t key)
 {
-    uint64_t start[4][LGA_LANES] __attribute__((aligned(64)));
-    for (unsigned k = 0; k < 4 * LGA_LANES; k++) {
-        start[k / LGA_LANES][k % LGA_LANES] = rng_mix(key + (k + 1) * 0x9e3779b97f4a7c15u);
-    }
-    for (int p = 0; p < PARTS; p++) {
-        s->a[p] = N(load)(start[0] + p * KERNEL_WIDTH);
-        s->b[p] = N(load)(start[1] + p * KERNEL_WIDTH);
-        s->c[p] = N(load)(start[2] + p * KERNEL_WIDTH);
-        s->d[p] = N(load)(start[3] + p * KERNEL_WIDTH);
+    for (uint32_t p = 0; p < PARTS; p++) {
+        s->a[p] = N(mixed)(key, p * KERNEL_WIDTH);
+        s->b[p] = N(mixed)(key, LGA_LANES + p * KERNEL_WIDTH);
+        s->c[p] = N(mixed)(key, 2 * LGA_LANES + p * KERNEL_WIDTH);
+        s->d[p] = N(mixed)(key, 3 * LGA_LANES + p * KERNEL_WIDTH);
     }
 }
 
