@@ -309,10 +309,27 @@ walls = ({ shape = "disc"; center = (20.0, 24.0); radius = 10.0; },
     def test_a_run_is_not_continued_with_other_settings(self):
         self.say("run", self.scene, "-o", "settled", "--until", "0.3")
         self.refuse(2, "run", self.scene, "-o", "settled", "--resume", "--seed", "7",
-                    words=["only 'until' may differ"])
+                    words=["only 'until' and 'count_max' may differ"])
         self.refuse(1, "run", self.scene, "-o", "nowhere", "--resume")
         self.say("run", self.scene, "-o", "settled", "--resume", "--until", "0.5")
         self.assertEqual(len(glob.glob(self.path("settled/frames/*.png"))), 6)
+
+    def test_a_run_with_sources_is_made_longer_with_room_for_what_they_bring(self):
+        scene = self.path("pouring.cfg")
+        with open(scene, "w", encoding="utf-8") as out:
+            out.write(DISCS.replace("placements", "sources = ({ position = (4.0, 11.0); "
+                                    "rate = 40.0; "
+                                    "velocity = (0.0, -8.0); });\nplacements"))
+        words = [scene, *FIXED, "-s", "output.maps=0", "-s", "placements=()", "-s",
+                 "grains.radius=0.1"]
+        self.say("run", *words, "-o", "poured", "--until", "0.2")
+        self.say("run", *words, "-o", "poured", "--until", "1.2", "--resume")
+        self.say("run", *words, "-o", "poured-once", "--until", "1.2")
+        self.assert_same_run("poured-once", "poured")
+        rows = self.rows(self.path("poured/log.csv"))
+        self.assertGreater(int(rows[-1]["grains"]), 12)     # more than 0.2 of the source need
+        self.assertEqual(self.manifest("poured")["state_digest"],
+                         self.manifest("poured-once")["state_digest"])
 
     def test_a_run_that_is_done_is_not_done_again(self):
         self.say("run", self.scene, "-o", "ended", "--until", "0.3", "-s", "output.checkpoint=0")

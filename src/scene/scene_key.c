@@ -181,6 +181,7 @@ static const struct key view_keys[] = {
     BOOL(view, gravity_arrow, "false", "an arrow along gravity"),
     TEXT(view, label, "t = {t} {time_unit}", NULL, "a line of text; {t}, {n}, ... are filled in"),
     TEXT(view, title, "", NULL, "a headline"),
+    TEXT(view, caption, "", NULL, "a line of text under the picture, filled in as the label is"),
     REAL(view, arrow_scale, "nan", KEY_POSITIVE, FAR, "",
          "length of an arrow per speed; absent: chosen"),
     REAL(view, force_scale, "nan", KEY_POSITIVE, FAR, "",
