@@ -473,7 +473,7 @@ static void test_a_huge_box_has_a_map_of_coarser_cells(void **unused)
         const struct measure measure = settings(NAN, KERNEL_BOX, NAN);
         double nx, ny;
         const double cell = field_cells(&scene, &measure, &nx, &ny);
-        CHECK(nx * ny <= FIELD_CELLS_MAX && nx * ny > 0.9 * FIELD_CELLS_MAX);
+        CHECK(nx * ny <= FIELD_CELLS_CHOSEN && nx * ny > 0.9 * FIELD_CELLS_CHOSEN);
         CHECK(cell * nx >= 32768 * (1 - 1e-9) && cell * ny >= 28377 * (1 - 1e-9));
     }
 }

@@ -19,7 +19,11 @@ struct field {
     double  *values;            /* [component][iy][ix]; row 0 is the lowest; NAN: no grains there */
 };
 
-enum { FIELD_CELLS_MAX = 16777216 };    /* of a map: 4096 x 4096 */
+enum {
+    FIELD_CELLS_MAX = 16777216, /* of a map: 4096 x 4096 */
+    FIELD_CELLS_CHOSEN = 1048576        /* if nobody says how many: about as many as pixels; each
+                                           takes some hundred bytes while a run gathers its fields */
+};
 
 /* The grid of maps over the scene's box: cells of measure.cell (absent: two mean diameters); along
  * a periodic side the size is changed a little so that a whole number of them fits (x first: with
