@@ -21,11 +21,12 @@ struct field {
 
 enum {
     FIELD_CELLS_MAX = 16777216, /* of a map: 4096 x 4096 */
-    FIELD_CELLS_CHOSEN = 1048576        /* if nobody says how many: about as many as pixels; each
-                                           takes some hundred bytes while a run gathers its fields */
+    FIELD_CELLS_CHOSEN = 1048576        /* if nobody says how many: about as many as pixels (each
+                                           takes some hundred bytes while fields are gathered) */
 };
 
-/* The grid of maps over the scene's box: cells of measure.cell (absent: two mean diameters); along
+/* The grid of maps over the scene's box: cells of measure.cell (absent: two mean diameters, in a huge
+ * box more); along
  * a periodic side the size is changed a little so that a whole number of them fits (x first: with
  * two periodic sides the last row may be cut short).  Returns the size of a cell. */
 double field_cells(const struct scene *scene, const struct measure *measure, double *nx,
