@@ -25,10 +25,10 @@ enum {
                                            takes some hundred bytes while fields are gathered) */
 };
 
-/* The grid of maps over the scene's box: cells of measure.cell (absent: two mean diameters, in a huge
- * box more); along
- * a periodic side the size is changed a little so that a whole number of them fits (x first: with
- * two periodic sides the last row may be cut short).  Returns the size of a cell. */
+/* The grid of maps over the scene's box: cells of measure.cell (absent: two mean diameters, in a
+ * huge box more); along a periodic side the size is changed a little so that a whole number of them
+ * fits (x first: with two periodic sides the last row may be cut short).  Returns the size of a
+ * cell. */
 double field_cells(const struct scene *scene, const struct measure *measure, double *nx,
                    double *ny);
 
