@@ -234,7 +234,7 @@ static void test_nothing_overlaps_or_leaves_the_picture_at_any_size(void **unuse
     (void)unused;
     for (int k = 0; k < SIZES; k++) {
         for (int theme = THEME_WHITE; theme <= THEME_TRANSPARENT; theme++) {
-            for (int parts = 0; parts < 64; parts++) {
+            for (int parts = 0; parts < 128; parts++) {
                 struct view view = full_view(sizes[k][0], sizes[k][1], theme);
                 double area[4];
                 if (parts & 1) view.title[0] = 0;
@@ -242,6 +242,7 @@ static void test_nothing_overlaps_or_leaves_the_picture_at_any_size(void **unuse
                 if (parts & 4) view.gravity_arrow = false;
                 if (parts & 8) view.scale = SCALE_LOG;
                 if (parts & 16) view.forces = false;
+                if (parts & 64) snprintf(view.caption, sizeof view.caption, "computed in 1.25 s");
                 draw_legend(&view, parts & 32 ? &field : NULL, area);
                 CHECK(page.count > 4);
                 check_marks(&view, area);
@@ -331,6 +332,25 @@ static void test_a_picture_without_legend_leaves_all_to_the_scene(void **unused)
     draw_legend(&view, NULL, area);
     CHECK(page.count == 0);
     CHECK(area[2] - area[0] == 64 && area[3] - area[1] == 48);
+}
+
+static void test_a_caption_stands_under_the_scene_and_all_else(void **unused)
+{
+    (void)unused;
+    for (int k = 0; k < SIZES; k++) {
+        struct view view = full_view(sizes[k][0], sizes[k][1], THEME_WHITE);
+        double area[4], lowest = 0;
+        snprintf(view.caption, sizeof view.caption, "N = {n} at the end");
+        draw_legend(&view, NULL, area);
+        const struct mark *caption = NULL;
+        for (uint32_t m = 0; m < page.count; m++) {
+            if (strcmp(page.marks[m].text, "N = 4 at the end") == 0) caption = &page.marks[m];
+            else if (page.marks[m].x0 < area[2]) lowest = fmax(lowest, page.marks[m].y1);
+        }
+        assert_non_null(caption);
+        CHECK(caption->y0 >= area[3]);
+        CHECK(caption->y1 > lowest);
+    }
 }
 
 static void test_the_layout_does_not_move_while_numbers_change(void **unused)
@@ -471,6 +491,7 @@ int main(void)
         cmocka_unit_test(test_reduced_units_count_diameters),
         cmocka_unit_test(test_values_outside_the_range_are_marked),
         cmocka_unit_test(test_a_picture_without_legend_leaves_all_to_the_scene),
+        cmocka_unit_test(test_a_caption_stands_under_the_scene_and_all_else),
         cmocka_unit_test(test_the_layout_does_not_move_while_numbers_change),
         cmocka_unit_test(test_labels_are_filled_in),
         cmocka_unit_test(test_the_time_has_as_many_digits_as_frames_need),

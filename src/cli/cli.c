@@ -9,7 +9,7 @@
 #define LOOK                                                                                    \
     OPTION_size, OPTION_color, OPTION_map, OPTION_zoom, OPTION_theme, OPTION_colormap,          \
     OPTION_scale, OPTION_range, OPTION_arrows, OPTION_forces, OPTION_rims, OPTION_spokes,       \
-    OPTION_shade, OPTION_title, OPTION_label
+    OPTION_shade, OPTION_title, OPTION_label, OPTION_caption
 #define ALWAYS OPTION_threads, OPTION_progress, OPTION_help, OPTION_COUNT
 
 static const uint8_t run_options[] = {OPTION_output, SIMULATING, OPTION_resume, OPTION_time_limit,

@@ -52,7 +52,7 @@ static void tell_run_cost(const char *run, char *text, size_t size)
     const json_t *seconds = json_object_get(manifest, "seconds");
     const json_t *wall = json_object_get(json_object_get(seconds, "core"), "wall");
     text[0] = 0;
-    if (wall) snprintf(text, size, "   computed in %.3g s", json_number_value(wall));
+    if (wall) snprintf(text, size, "computed in %.3g s", json_number_value(wall));
     json_decref(manifest);
 }
 
@@ -68,10 +68,11 @@ static bool open_panel(struct cast *cast, uint32_t p, const struct options *opti
     struct view view = setup->scene->view;
     if (cast->count > 1 && !options_given(options, OPTION_label)) {
         const size_t used = strlen(view.label);
-        char cost[80] = "   computed in {wall} s";
-        if (redraws) tell_run_cost(path, cost, sizeof cost);
-        snprintf(view.label + used, sizeof view.label - used, "%s{model}%s", used ? "   " : "",
-                 cost);
+        snprintf(view.label + used, sizeof view.label - used, "%s{model}", used ? "   " : "");
+    }
+    if (cast->count > 1 && !view.caption[0]) {
+        if (redraws) tell_run_cost(path, view.caption, sizeof view.caption);
+        else snprintf(view.caption, sizeof view.caption, "computed in {wall} s");
     }
     panel->setup = setup;
     return footage_open(&panel->footage, setup, path, film_needs_contacts(&view), error)

@@ -58,6 +58,8 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(title,     "title",     0,   "TEXT",  "view.title", FORM_WORD, "a headline")              \
     X(label,     "label",     0,   "TEXT",  "view.label", FORM_WORD,                            \
       "a line of text with {t} {n} {model} {steps} ...")                                        \
+    X(caption,   "caption",   0,   "TEXT",  "view.caption", FORM_WORD,                          \
+      "the same under the picture")                                                             \
     X(fps,       "fps",       0,   "N",     "output.frame_rate", FORM_PLAIN,                    \
       "frames a second of a movie")                                                             \
     X(every,     "every",     0,   "DT",    "output.frames", FORM_PLAIN,                        \

@@ -12,7 +12,7 @@ static const double text_share = 1.0 / 40;      /* of the picture's height */
 static const double text_min = 9;               /* below, letters cannot be read */
 static const double width_min = 18, height_min = 13;    /* of a picture with a legend, in letters */
 static const double column_width = 7, item_width = 13.5, row_height = 1.9;
-static const double margin = 0.6;
+static const double margin = 0.6, caption_height = 1.9;
 
 static void choose_text(const struct picture *picture, struct layout *layout)
 {
@@ -47,6 +47,7 @@ static void choose_parts(const struct picture *picture, struct layout *layout)
     layout->field_bar = view->legend && picture->field;
     layout->title = view->title[0] != 0;
     layout->label = view->label[0] != 0;
+    layout->caption = view->caption[0] != 0;
     layout->item[LAYOUT_SCALE] = view->scale_bar;
     layout->item[LAYOUT_GRAVITY] = view->gravity_arrow;
     layout->item[LAYOUT_FORCE] = view->legend && view->forces && picture->grains;
@@ -66,8 +67,13 @@ static void place_top(const struct picture *picture, struct layout *layout)
     layout->top[3] = height * layout->text;
 }
 
+/* The caption stands below all else, the scale bar and the like above it. */
 static void place_bottom(struct layout *layout)
 {
+    if (layout->caption) {
+        layout->caption_base = layout->height - 0.7 * layout->text;
+        layout->bottom[3] -= caption_height * layout->text;
+    }
     uint32_t count = 0;
     for (int item = 0; item < LAYOUT_ITEMS; item++) count += layout->item[item];
     const double width = layout->bottom[2] - layout->bottom[0];
@@ -77,7 +83,7 @@ static void place_bottom(struct layout *layout)
     if (layout->item_width > width) layout->item_width = width;
     layout->row_height = row_height * layout->text;
     const double height = layout->rows ? layout->rows * layout->row_height + 0.4 * layout->text : 0;
-    layout->bottom[1] = layout->height - height;
+    layout->bottom[1] = layout->bottom[3] - height;
 }
 
 void overlay_layout_make(const struct picture *picture, struct layout *layout)
@@ -97,12 +103,13 @@ void overlay_layout_make(const struct picture *picture, struct layout *layout)
     memcpy(layout->bottom, (double[4]){pad, height, right - pad, height}, sizeof layout->bottom);
     place_top(picture, layout);
     place_bottom(layout);
-    const bool plain = !bars && layout->top[3] == 0 && layout->rows == 0;
+    const bool foot = layout->rows || layout->caption;
+    const bool plain = !bars && layout->top[3] == 0 && !foot;
     const double left = plain ? 0 : pad;
     layout->area[0] = left;
     layout->area[1] = fmax(layout->top[3], left);
     layout->area[2] = right - (bars ? 0 : left);
-    layout->area[3] = layout->rows ? layout->bottom[1] : height - left;
+    layout->area[3] = foot ? layout->bottom[1] : height - left;
 }
 
 void overlay_layout(const struct picture *picture, double area[4])

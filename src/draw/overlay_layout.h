@@ -6,6 +6,7 @@
  *     | area: the scene              | bars   |
  *     +------------------------------+        |
  *     | bottom: scale bar, arrows    |        |
+ *     | caption                      |        |
  *     +------------------------------+--------+
  *
  * It depends on the view alone, never on numbers that change from frame to frame, so that a film
@@ -29,11 +30,12 @@ struct layout {
     double unit;                /* what is a pixel in a picture 720 high: line widths */
     bool   small;               /* too small a picture for any legend */
     bool   grains_bar, field_bar;
-    bool   title, label, one_line;
+    bool   title, label, one_line, caption;
     bool   item[LAYOUT_ITEMS];
     uint32_t columns, rows;     /* of the items */
     double item_width, row_height;
     double area[4], top[4], bottom[4], column[4];       /* x0 y0 x1 y1 */
+    double caption_base;        /* y of the caption's letters */
 };
 
 void overlay_layout_make(const struct picture *picture, struct layout *layout);

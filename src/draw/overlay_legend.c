@@ -64,6 +64,16 @@ static void draw_top(const struct legend *legend)
     draw_line(legend, layout->top[0], base + 1.4 * s, s, room, INK_LEFT, label);
 }
 
+static void draw_caption(const struct legend *legend)
+{
+    const struct layout *layout = &legend->layout;
+    char caption[TEXT_LENGTH_MAX];
+    if (!layout->caption) return;
+    overlay_label(legend->picture, legend->picture->view->caption, caption, sizeof caption);
+    draw_line(legend, layout->bottom[0], layout->caption_base, layout->text,
+              layout->bottom[2] - layout->bottom[0], INK_LEFT, caption);
+}
+
 void overlay_legend(struct ink *ink, const struct picture *picture, const struct transform *t,
                     const double range[2], const double field_range[2])
 {
@@ -77,6 +87,7 @@ void overlay_legend(struct ink *ink, const struct picture *picture, const struct
     legend.rule = fmax(1, round(legend.layout.unit));
     if (legend.layout.small) return;
     draw_top(&legend);
+    draw_caption(&legend);
     overlay_legend_bars(&legend);
     overlay_legend_items(&legend);
 }

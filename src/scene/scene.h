@@ -137,6 +137,7 @@ struct view {
     bool   legend, scale_bar, gravity_arrow;
     char   label[KEY_TEXT_MAX]; /* "t = {t} {time_unit}   N = {n}": see docs/pictures.md */
     char   title[KEY_TEXT_MAX];
+    char   caption[KEY_TEXT_MAX];       /* as the label, under the scene */
     double arrow_scale, force_scale;    /* NAN: chosen */
     double text_size;           /* pixels; NAN: from the picture's height */
 };

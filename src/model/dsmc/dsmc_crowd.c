@@ -124,7 +124,8 @@ void dsmc_crowd_global(struct dsmc_crowd *crowd)
     const float nu = (float)(area / ((double)dsmc->ax.length * (double)dsmc->ay.length));
     const float chi = dsmc_chi(dsmc->settings.chi, nu);
     const float fy = volume(&dsmc->ay, crowd->row);
-    for (uint32_t k = 0; k < crowd->x1 - crowd->x0; k++) {
-        crowd->factor[k] = chi / (fy * volume(&dsmc->ax, crowd->x0 + k));
-    }
+    const uint32_t cells = crowd->x1 - crowd->x0;
+    for (uint32_t k = 0; k < cells; k++) crowd->factor[k] = chi / fy;
+    crowd->factor[0] = chi / (fy * volume(&dsmc->ax, crowd->x0));       /* perhaps at a border */
+    crowd->factor[cells - 1] = chi / (fy * volume(&dsmc->ax, crowd->x1 - 1));
 }

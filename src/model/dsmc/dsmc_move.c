@@ -85,9 +85,10 @@ FORCE_INLINE void fly(struct dsmc *dsmc, const struct dsmc_flight *flight, struc
     share->gone = mine.gone;
 }
 
-/* The same where nothing is in the way: no walls, no open or sheared borders. */
+/* The same where nothing is in the way: no walls, no open or sheared borders.  `falls`: there is
+ * gravity; `alone`: there is one share, so that nobody leaves it. */
 FORCE_INLINE void fly_freely(struct dsmc *dsmc, const struct dsmc_flight *f, struct run run,
-                             struct dsmc_share *share)
+                             struct dsmc_share *share, bool falls, bool alone)
 {
     struct dsmc_share mine = *share;
     uint32_t *restrict load = dsmc->load;
@@ -101,14 +102,19 @@ FORCE_INLINE void fly_freely(struct dsmc *dsmc, const struct dsmc_flight *f, str
         vector8 *at = (vector8 *)(void *)&grains[i];
         vector8 p = *at;
         const vector8 v = {p[2], p[3], p[2], p[3], p[6], p[7], p[6], p[7]};
-        p += v * time + fall;
+        p += falls ? v * time + fall : v * time;
         const vector8 up = (vector8)((mask8)by & (p < below));
         const vector8 down = (vector8)((mask8)by & (p >= above));
         p = p + up - down;
         *at = p;
         dsmc_flight_two(&finder, &p, cell);
-        dsmc_sort_arrive(&mine, load, cell[0]);
-        dsmc_sort_arrive(&mine, load, cell[1]);
+        if (alone) {
+            load[cell[0]]++;
+            load[cell[1]]++;
+        } else {
+            dsmc_sort_arrive(&mine, load, cell[0]);
+            dsmc_sort_arrive(&mine, load, cell[1]);
+        }
     }
     if (i < run.last) {
         vector4 *at = (vector4 *)(void *)&grains[i];
@@ -120,11 +126,18 @@ FORCE_INLINE void fly_freely(struct dsmc *dsmc, const struct dsmc_flight *f, str
     share->gone = mine.gone;
 }
 
-CLONES static void fly_free(struct dsmc *dsmc, const struct dsmc_flight *f, struct run run,
-                            struct dsmc_share *share)
-{
-    fly_freely(dsmc, f, run, share);
-}
+/* X(name, falls, alone) */
+#define FREE_LOOPS(X)                                                                           \
+    X(free, false, false) X(free_alone, false, true) X(fall, true, false) X(fall_alone, true, true)
+
+#define X(name, falls, alone)                                                                   \
+    CLONES static void fly_##name(struct dsmc *dsmc, const struct dsmc_flight *f,               \
+                                  struct run run, struct dsmc_share *share)                     \
+    {                                                                                           \
+        fly_freely(dsmc, f, run, share, falls, alone);                                          \
+    }
+FREE_LOOPS(X)
+#undef X
 
 /* X(name, walls, shear): the loops that exist beside */
 #define LOOPS(X)                                                                                \
@@ -143,10 +156,12 @@ static void fly_block(struct dsmc *dsmc, const struct dsmc_flight *f, struct run
                       struct dsmc_share *share)
 {
     const bool walls = dsmc->walls.first, shear = f->image.speed != 0;
+    const bool falls = dsmc->effects & EFFECT_GRAVITY, alone = share->cells == dsmc->cells;
     if (walls) (shear ? fly_both : fly_walls)(dsmc, f, run, share);
     else if (shear) fly_shear(dsmc, f, run, share);
-    else if (dsmc->ax.periodic && dsmc->ay.periodic) fly_free(dsmc, f, run, share);
-    else fly_open(dsmc, f, run, share);
+    else if (!dsmc->ax.periodic || !dsmc->ay.periodic) fly_open(dsmc, f, run, share);
+    else if (falls) (alone ? fly_fall_alone : fly_fall)(dsmc, f, run, share);
+    else (alone ? fly_free_alone : fly_free)(dsmc, f, run, share);
 }
 
 void dsmc_move_sort(struct dsmc *dsmc)

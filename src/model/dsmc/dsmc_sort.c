@@ -326,7 +326,7 @@ void dsmc_sort_share(struct dsmc *dsmc, uint32_t t, uint32_t team)
         return;
     }
     if (!share->complete) count_guests(dsmc, t, team);
-    share->sum = sum_of(dsmc, share);
+    share->sum = team > 1 ? sum_of(dsmc, share) : 0;            /* one alone begins at 0 */
 #pragma omp barrier
     uint32_t before = 0;
     for (uint32_t q = 0; q < t; q++) before += dsmc->shares[q].sum;

@@ -132,6 +132,7 @@ bool md_fault_escaped(struct md *md)
 {
     const struct scene *scene = md->scene;
     const double *box = scene->box;
+    if (!(md->effects & EFFECT_WALLS)) return true;
     for (uint32_t i = 0; i < md->count; i++) {
         const struct grain *g = &md->grains[i];
         const double room = 2 * md_radius(md, i);

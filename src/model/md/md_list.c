@@ -101,8 +101,10 @@ static void wrap(struct md *md)
     SHARED_LOOP
     for (uint32_t i = 0; i < md->count; i++) {
         struct grain *g = &md->grains[i];
-        if (along_x) g->x -= width * floor((g->x - box[0]) / width);
-        if (along_y) g->y -= height * floor((g->y - box[1]) / height);
+        const bool out_x = g->x < box[0] || g->x >= box[2];
+        const bool out_y = g->y < box[1] || g->y >= box[3];
+        if (along_x && out_x) g->x -= width * floor((g->x - box[0]) / width);
+        if (along_y && out_y) g->y -= height * floor((g->y - box[1]) / height);
     }
 }
 
@@ -293,18 +295,15 @@ static uint32_t neighbourhood(const struct md *md, uint32_t cx, uint32_t cy,
     return count;
 }
 
-/* The old list, its springs with it, is whole until the new one is. */
-static void carry_contact(const struct md *md, uint32_t i, uint32_t j, struct link *link,
-                          double *spring)
+/* Does link `at` of the new list go on with a contact that grain j had, one of those from `k` on?
+ * The old list, its springs with it, is whole until the new one is. */
+static void carry_contact(const struct md *md, uint32_t k, uint32_t j, uint32_t at)
 {
     const struct md_scratch *s = md->scratch;
-    if (spring) *spring = 0;
-    for (uint32_t k = s->kept_first[i]; k != NONE; k = s->kept_next[k]) {
-        if (s->kept_partner[k] != j) continue;
-        link->j |= LINK_TOUCHES;
-        if (spring) *spring = md->springs[k];
-        return;
-    }
+    while (k != NONE && s->kept_partner[k] != j) k = s->kept_next[k];
+    if (k == NONE) return;
+    s->links[at].j |= LINK_TOUCHES;
+    if (s->springs) s->springs[at] = md->springs[k];
 }
 
 /* Lists the links of strip t into its stretch of the scratch array: those within the strip from
@@ -328,6 +327,7 @@ FORCE_INLINE bool list_strip(struct md *md, uint32_t t, bool sizes)
             stretches = neighbourhood(md, cx, cy, around);
         }
         for (uint32_t r = 0; r < stretches; r++) {
+            const uint32_t kept = s->kept_first[i];
             const uint32_t first = around[r].first > i ? around[r].first : i + 1;
             const double x = g->x - md->image_x[around[r].image];
             const double y = g->y - md->image_y[around[r].image];
@@ -341,7 +341,8 @@ FORCE_INLINE bool list_strip(struct md *md, uint32_t t, bool sizes)
                 const bool crosses = j >= strip->last;
                 const uint32_t at = begin + (crosses ? room - ++cross : inner++);
                 s->links[at] = (struct link){i, j | around[r].image << LINK_IMAGE_SHIFT};
-                carry_contact(md, i, j, &s->links[at], s->springs ? &s->springs[at] : NULL);
+                if (s->springs) s->springs[at] = 0;
+                if (kept != NONE) carry_contact(md, kept, j, at);
             }
         }
     }

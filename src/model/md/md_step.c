@@ -20,11 +20,13 @@
 #include <omp.h>
 #include <string.h>
 
-/* How grains move: with traits of their own, turning, by Gear's method; some for the first time. */
-enum { TRAITS = 1, ROTATES = 2, GEAR = 4, FRESH = 8 };
+/* How grains move: with traits of their own, turning, by Gear's method; some for the first time;
+ * under gravity. */
+enum { TRAITS = 1, ROTATES = 2, GEAR = 4, FRESH = 8, FALLS = 16 };
 
 /* What turns has traits; nothing is fresh for Gear. */
-#define FORMS(X) X(0) X(1) X(3) X(4) X(5) X(7) X(8) X(9) X(11)
+#define FORMS(X) X(0) X(1) X(3) X(4) X(5) X(7) X(8) X(9) X(11) \
+                 X(16) X(17) X(19) X(20) X(21) X(23) X(24) X(25) X(27)
 
 /* Speeds are compared as bit patterns: for numbers >= 0 the order is the same, and what is not a
  * number comes out above all numbers, whatever its sign. */
@@ -131,8 +133,11 @@ FORCE_INLINE uint64_t move(struct md *md, struct forces forces, uint32_t first, 
         const struct push push = forces.pushes[i];
         const struct trait *trait = form & TRAITS ? &md->traits[i] : NULL;
         const double inverse_mass = form & TRAITS ? trait->inverse_mass : md->inverse_mass_one;
-        const double ax = push.fx * inverse_mass + gx, ay = push.fy * inverse_mass + gy;
-        double at = 0;
+        double ax = push.fx * inverse_mass, ay = push.fy * inverse_mass, at = 0;
+        if (form & FALLS) {
+            ax += gx;
+            ay += gy;
+        }
         forces.pushes[i] = (struct push){0};
         if (form & ROTATES) {
             at = forces.twists[i] * inverse_mass * trait->inverse_inertia;
@@ -150,7 +155,8 @@ FORCE_INLINE uint64_t move(struct md *md, struct forces forces, uint32_t first, 
 static unsigned form_of(const struct md *md)
 {
     return (md->traits ? TRAITS : 0) | (md->turns ? ROTATES : 0) | (md->gears ? GEAR : 0)
-         | (md->some_fresh && !md->gears ? FRESH : 0);
+         | (md->some_fresh && !md->gears ? FRESH : 0)
+         | (md->effects & EFFECT_GRAVITY ? FALLS : 0);
 }
 
 static uint64_t move_grains(const unsigned form, struct md *md, struct forces forces,
