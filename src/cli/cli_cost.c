@@ -107,8 +107,8 @@ static json_t *describe(const struct cost_table *table)
         json_array_append_new(points, json_pack(
             "{s:s, s:o, s:f, s:f, s:f, s:f, s:o, s:b, s:b, s:b, s:i}", "setting", p->label,
             "keys", keys, "wall_seconds", p->wall, "cpu_seconds", p->cpu, "error", p->error,
-            "error_noise", p->error_noise, "observables", errors, "front", p->front, "reference", p->reference,
-            "cached", p->cached, "seeds", (int)p->seeds));
+            "error_noise", p->error_noise, "observables", errors, "front", p->front,
+            "reference", p->reference, "cached", p->cached, "seeds", (int)p->seeds));
     }
     json_t *orders = json_array();
     for (uint32_t k = 0; k < table->order_count; k++) {
