@@ -130,9 +130,9 @@ def _manifest(data):
     return told
 
 
-def _log(data):
+def _without(column, data):
     rows = list(csv.reader(data.decode().splitlines()))
-    at = rows[0].index("wall_seconds")
+    at = rows[0].index(column)
     return [row[:at] + row[at + 1:] for row in rows]
 
 
@@ -143,7 +143,9 @@ def _contents(path):
     if name == "manifest.json":
         return _manifest(data)
     if name == "log.csv":
-        return _log(data)
+        return _without("wall_seconds", data)
+    if name == "results.csv":
+        return _without("run_seconds", data)
     return _checkpoint(data) if name.endswith(".checkpoint") else data
 
 

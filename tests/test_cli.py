@@ -224,13 +224,13 @@ walls = ({ shape = "disc"; center = (20.0, 24.0); radius = 10.0; },
     # The same bytes
 
     def test_threads_and_watching_change_no_byte(self):
-        self.say("run", self.scene, "-o", "one", "-j", "1", *FIXED)
+        one = self.undisturbed(*FIXED, "-j", "1")
         self.say("run", self.scene, "-o", "two", "-j", "2", *FIXED)
-        self.assert_same_run("one", "two")
+        self.assert_same_run(one, "two")
         self.say("run", self.scene, "-o", "unwatched", "-s", "output.frames=0", "-s", "output.log=0",
                  "-s", "output.maps=0", "-s", "output.checkpoint=0")
         self.assertEqual(self.manifest("unwatched")["state_digest"],
-                         self.manifest("one")["state_digest"])
+                         self.manifest(one)["state_digest"])
 
     def test_the_resolved_scene_reproduces_the_run(self):
         self.say("run", self.scene, "-o", "first", "--until", "0.4")
@@ -253,9 +253,15 @@ walls = ({ shape = "disc"; center = (20.0, 24.0); radius = 10.0; },
             errors = child.communicate(timeout=120)[1]
         return child.returncode, errors
 
-    def check_interruption(self, name, sent, code, *options):
-        self.say("run", self.scene, "-o", name, *options)
-        torn = name + "-torn"
+    def undisturbed(self, *options):
+        """A whole run with these options, made once for all that are compared with it."""
+        name = "straight-" + str(abs(hash(options)))
+        if not os.path.exists(self.path(name)):
+            self.say("run", self.scene, "-o", name, *options)
+        return name
+
+    def check_interruption(self, torn, sent, code, *options):
+        name = self.undisturbed(*options)
         ended, errors = self.interrupt(torn, 12, sent, *options)
         self.assertEqual(ended, code, errors)
         self.assertIn("--resume", errors)
@@ -265,7 +271,7 @@ walls = ({ shape = "disc"; center = (20.0, 24.0); radius = 10.0; },
         self.assert_same_run(name, torn)
 
     # Enough steps that the signal finds the run still at work.
-    LONG = ["-s", "md.dt=1e-5"]
+    LONG = ["-s", "md.dt=2e-5"]
 
     def test_a_run_that_is_interrupted_and_resumed_is_like_one_that_was_not(self):
         self.check_interruption("live", signal.SIGINT, 130, *self.LONG, *FIXED)
@@ -283,18 +289,17 @@ walls = ({ shape = "disc"; center = (20.0, 24.0); radius = 10.0; },
                     words=["--resume"])
         self.assertEqual(self.manifest("brief")["status"], "stopped")
         self.say("run", "brief", "--resume", "--until", "1.2")
-        self.say("run", self.scene, "-o", "straight", *self.LONG, *FIXED)
-        self.assert_same_run("brief", "straight")
+        self.assert_same_run("brief", self.undisturbed(*self.LONG, *FIXED))
 
     def test_a_torn_checkpoint_is_noticed_and_the_one_before_it_used(self):
-        self.say("run", self.scene, "-o", "whole", *FIXED)
-        shutil.copytree(self.path("whole"), self.path("damaged"))
+        whole = self.undisturbed(*FIXED, "-j", "1")
+        shutil.copytree(self.path(whole), self.path("damaged"))
         files = sorted(glob.glob(self.path("damaged/checkpoint/*.checkpoint")), key=os.path.getmtime)
         self.assertEqual(len(files), 2)
         with open(files[-1], "r+b") as newest:
             newest.truncate(os.path.getsize(files[-1]) - 9)
         self.say("run", "damaged", "--resume")
-        self.assert_same_run("whole", "damaged")
+        self.assert_same_run(whole, "damaged")
         for name in glob.glob(self.path("damaged/checkpoint/*.checkpoint")):
             with open(name, "r+b") as file:
                 file.seek(300)
@@ -304,10 +309,27 @@ walls = ({ shape = "disc"; center = (20.0, 24.0); radius = 10.0; },
     def test_a_run_is_not_continued_with_other_settings(self):
         self.say("run", self.scene, "-o", "settled", "--until", "0.3")
         self.refuse(2, "run", self.scene, "-o", "settled", "--resume", "--seed", "7",
-                    words=["only 'until' may differ"])
+                    words=["only 'until' and 'count_max' may differ"])
         self.refuse(1, "run", self.scene, "-o", "nowhere", "--resume")
         self.say("run", self.scene, "-o", "settled", "--resume", "--until", "0.5")
         self.assertEqual(len(glob.glob(self.path("settled/frames/*.png"))), 6)
+
+    def test_a_run_with_sources_is_made_longer_with_room_for_what_they_bring(self):
+        scene = self.path("pouring.cfg")
+        with open(scene, "w", encoding="utf-8") as out:
+            out.write(DISCS.replace("placements", "sources = ({ position = (4.0, 11.0); "
+                                    "rate = 40.0; "
+                                    "velocity = (0.0, -8.0); });\nplacements"))
+        words = [scene, *FIXED, "-s", "output.maps=0", "-s", "placements=()", "-s",
+                 "grains.radius=0.1"]
+        self.say("run", *words, "-o", "poured", "--until", "0.2")
+        self.say("run", *words, "-o", "poured", "--until", "1.2", "--resume")
+        self.say("run", *words, "-o", "poured-once", "--until", "1.2")
+        self.assert_same_run("poured-once", "poured")
+        rows = self.rows(self.path("poured/log.csv"))
+        self.assertGreater(int(rows[-1]["grains"]), 12)     # more than 0.2 of the source need
+        self.assertEqual(self.manifest("poured")["state_digest"],
+                         self.manifest("poured-once")["state_digest"])
 
     def test_a_run_that_is_done_is_not_done_again(self):
         self.say("run", self.scene, "-o", "ended", "--until", "0.3", "-s", "output.checkpoint=0")

@@ -464,6 +464,20 @@ static void test_what_cannot_be_mapped_is_refused_with_the_cure(void **unused)
     CHECK(map_find("speed") == MAP_speed && map_find("sped") == -1);
 }
 
+static void test_a_huge_box_has_a_map_of_coarser_cells(void **unused)
+{
+    (void)unused;
+    const enum border sides[] = {BORDER_WALL, BORDER_PERIODIC};
+    for (int k = 0; k < 2; k++) {
+        const struct scene scene = box_scene(32768, 28377, sides[k], sides[k]);
+        const struct measure measure = settings(NAN, KERNEL_BOX, NAN);
+        double nx, ny;
+        const double cell = field_cells(&scene, &measure, &nx, &ny);
+        CHECK(nx * ny <= FIELD_CELLS_MAX && nx * ny > 0.9 * FIELD_CELLS_MAX);
+        CHECK(cell * nx >= 32768 * (1 - 1e-9) && cell * ny >= 28377 * (1 - 1e-9));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -481,6 +495,7 @@ int main(void)
         cmocka_unit_test(test_a_box_may_lie_anywhere_and_labels_carry_units),
         cmocka_unit_test(test_threads_and_lost_grains_change_nothing),
         cmocka_unit_test(test_what_cannot_be_mapped_is_refused_with_the_cure),
+        cmocka_unit_test(test_a_huge_box_has_a_map_of_coarser_cells),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

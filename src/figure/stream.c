@@ -94,6 +94,23 @@ static bool radii(struct figure_job *job, bool flat, struct chart *chart, double
     return true;
 }
 
+/* The paper's slope of F(R_ob).  An independent program has 104(3)e3 dyn/cm between 1 and 1.5 cm,
+ * less than the paper: the layer before a large obstacle shields it. */
+static void judge_slope(struct figure_job *job, const struct chart *chart, double slope,
+                        double noise)
+{
+    static const double paper = 111e3, between = 104e3, between_error = 3e3;
+    if (fabs(slope - paper) <= doubt(job, paper, 2 * noise)) {
+        figure_near(job, "slope dF/dR_ob [dyn/cm]", slope, paper, doubt(job, paper, 2 * noise));
+        return;
+    }
+    const double here = (chart_at(chart, 0, 1.5) - chart_at(chart, 0, 1)) / 0.5;
+    const double here_error = hypot(between_error, M_SQRT2 * noise / 0.5);
+    figure_miss(job, fabs(here - between) < 2 * here_error, "the paper's slope of 111e3 dyn/cm is "
+                "not reproduced: %.3g over all sizes, %.3g +- %.1g from 1 to 1.5 cm, where an "
+                "independent program has 104e3", slope, here, M_SQRT2 * noise / 0.5);
+}
+
 bool stream_radius(struct figure_job *job, struct error *error)
 {
     struct chart chart;
@@ -112,10 +129,9 @@ bool stream_radius(struct figure_job *job, struct error *error)
         chart_law(&chart, "flat: 156 R_ob 10^3", straight, &(struct stats_line){.slope = 156e3},
                   0, job->quick ? 1 : 2.5, 2);
         figure_near(job, "F at R_ob = 1 cm [dyn]", at_one, 129e3, doubt(job, 129e3, noise[0]));
-        /* The paper's line for the flat obstacle has no offset, though the round one's has;
-         * An independent program: 179(2)e3 at 1 cm. */
-        figure_near(job, "slope dF/dR_ob [dyn/cm]", round.slope, 111e3,
-                    doubt(job, 111e3, 2 * noise[0]));
+        judge_slope(job, &chart, round.slope, noise[0]);
+        /* The paper's line for the flat obstacle has no offset, though the round one's has; an
+         * independent program: 179(2)e3 at 1 cm. */
         figure_near(job, "flat at 1 cm, corrected physics", flat_at_one, 179e3,
                     doubt(job, 179e3, noise[1]));
         if (fabs(flat_at_one - 156e3) > doubt(job, 156e3, noise[1])) {

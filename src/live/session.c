@@ -152,8 +152,12 @@ bool session_open(struct session *session, const struct session_request *request
 bool session_close(struct session *session, struct error *error)
 {
     bool done = true;
-    if (session->journal) {
+    /* A session that could not be opened to its end, which is the keeper's first state, has none
+     * to tell of. */
+    if (session->journal && session->keeper.count > 0) {
         done = journal_end(session, error) && write_scene(session, "done", error);
+    } else if (session->journal) {
+        fclose(session->journal);
     }
     sight_close(session);
     forget_before(session);

@@ -106,42 +106,53 @@ static double solve_height(const struct stats_plane *fit, double guess)
 }
 
 /* x = c - h/m - (l/r) ln h is linear in c, 1/m and l/r, so there is nothing to guess. */
-bool heap_tail(const struct heap *heap, double foot, double high, struct heap_tail *tail,
-               struct error *error)
+bool heap_tail_through(const double *x, const double *h, uint32_t points, struct heap_tail *tail,
+                       struct error *error)
 {
-    *tail = (struct heap_tail){NAN, NAN, NAN, NAN, NAN, NAN, middle_of(heap), NAN, NAN, 0};
-    double *x = malloc(3 * (size_t)heap->bins * sizeof *x), full = 0;
-    if (!x) return error_set(error, "not enough memory to fit a heap of %u bins", heap->bins);
-    double *h = x + heap->bins, *logs = h + heap->bins;
-    for (uint32_t b = 0; b < heap->bins; b++) full = fmax(full, heap->height[b]);
-    for (uint32_t b = 0; b < heap->bins; b++) {
-        if (!(heap->height[b] >= foot) || heap->height[b] > high * full) continue;
-        h[tail->points] = heap->height[b];
-        logs[tail->points] = log(heap->height[b]);
-        x[tail->points++] = fabs(heap->x0 + (b + 0.5) * heap->width - tail->middle);
+    double *logs = calloc(points + 1u, sizeof *logs), full = 0, rest = 0;
+    if (!logs) return error_set(error, "not enough memory to fit a heap by %u points", points);
+    for (uint32_t k = 0; k < points; k++) {
+        logs[k] = log(h[k]);
+        full = fmax(full, h[k]);
     }
-    const struct stats_plane fit = stats_plane(h, logs, x, tail->points);
-    const struct stats_line line = stats_line(h, x, tail->points);
-    double rest = 0;
-    for (uint32_t k = 0; k < tail->points; k++) {
+    const struct stats_plane fit = stats_plane(h, logs, x, points);
+    const struct stats_line line = stats_line(h, x, points);
+    for (uint32_t k = 0; k < points; k++) {
         rest += pow(x[k] - line.offset - line.slope * h[k], 2);
     }
-    free(x);
+    free(logs);
     const double hm = solve_height(&fit, full), m = -1 / fit.p[1];
-    tail->slope = m;
-    tail->slope_error = m * m * sqrt(fit.covariance[1][1]);
-    tail->tail = -fit.p[2];
-    tail->tail_error = sqrt(fit.covariance[2][2]);
-    tail->height = hm;
+    *tail = (struct heap_tail){
+        .slope = m, .slope_error = m * m * sqrt(fit.covariance[1][1]),
+        .tail = -fit.p[2], .tail_error = sqrt(fit.covariance[2][2]), .height = hm,
+        .rms = fit.rms, .rms_line = sqrt(rest / points), .points = points};
     const double gradient[3] = {1, hm, log(hm)};
     double spread2 = 0;
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 3; c++) spread2 += gradient[r] * fit.covariance[r][c] * gradient[c];
     }
     tail->height_error = sqrt(fmax(0, spread2)) / fabs(1 / m + tail->tail / hm);
-    tail->rms = fit.rms;
-    tail->rms_line = sqrt(rest / tail->points);
     return true;
+}
+
+bool heap_tail(const struct heap *heap, double foot, double high, struct heap_tail *tail,
+               struct error *error)
+{
+    const double middle = middle_of(heap);
+    double *x = malloc(2 * (size_t)heap->bins * sizeof *x), full = 0;
+    if (!x) return error_set(error, "not enough memory to fit a heap of %u bins", heap->bins);
+    double *h = x + heap->bins;
+    uint32_t points = 0;
+    for (uint32_t b = 0; b < heap->bins; b++) full = fmax(full, heap->height[b]);
+    for (uint32_t b = 0; b < heap->bins; b++) {
+        if (!(heap->height[b] >= foot) || heap->height[b] > high * full) continue;
+        h[points] = heap->height[b];
+        x[points++] = fabs(heap->x0 + (b + 0.5) * heap->width - middle);
+    }
+    const bool done = heap_tail_through(x, h, points, tail, error);
+    tail->middle = middle;
+    free(x);
+    return done;
 }
 
 double heap_tail_x(const struct heap_tail *tail, double h)

@@ -59,6 +59,10 @@ struct heap_tail {
 bool heap_tail(const struct heap *heap, double foot, double high, struct heap_tail *tail,
                struct error *error);
 
+/* The same through given points, x from the middle and a height h > 0. */
+bool heap_tail_through(const double *x, const double *h, uint32_t points, struct heap_tail *tail,
+                       struct error *error);
+
 /* x of eq. 8 at a height. */
 double heap_tail_x(const struct heap_tail *tail, double h);
 

@@ -17,6 +17,8 @@ double field_cells(const struct scene *scene, const struct measure *measure, dou
     double cell = measure->cell;
     if (isnan(cell)) cell = 4 * scene->radius_mean;     /* two mean diameters */
     if (!(cell > 0)) cell = fmax(lx, ly) / 64;
+    /* A box of a billion nodes has a map too; 1 % is for the rounding of sides. */
+    if (isnan(measure->cell)) cell = fmax(cell, 1.01 * sqrt(lx * ly / FIELD_CELLS_MAX));
     cell = fmin(cell, fmin(lx, ly));
     if (scene->left == BORDER_PERIODIC) cell = lx / fmax(1, round(lx / cell));
     else if (scene->bottom == BORDER_PERIODIC) cell = ly / fmax(1, round(ly / cell));

@@ -134,8 +134,8 @@ static bool belongs_here(const struct stored *stored, const char *directory, con
     if (!same) resolved_difference(there, scene, difference, sizeof difference);
     free(there);
     return same || error_set_code(error, EXIT_USAGE, "%s: the checkpoint belongs to another scene "
-        "or other settings (only 'until' may differ): %s; resume with the options of the first "
-        "run, or start anew with --force", directory, difference);
+        "or other settings (only 'until' and 'count_max' may differ): %s; resume with the options "
+        "of the first run, or start anew with --force", directory, difference);
 }
 
 bool checkpoint_load(const char *directory, const char *scene, void **bytes, size_t *size,

@@ -25,12 +25,17 @@ json_t *recall_manifest(const char *run, struct error *error)
     return root;
 }
 
+bool recall_says_done(const json_t *manifest)
+{
+    const char *status = json_string_value(json_object_get(manifest, "status"));
+    return status && strcmp(status, "done") == 0;
+}
+
 bool recall_done(const char *run)
 {
     struct error ignored;
     json_t *root = recall_manifest(run, &ignored);
-    const char *status = json_string_value(json_object_get(root, "status"));
-    const bool done = status && strcmp(status, "done") == 0;
+    const bool done = recall_says_done(root);
     json_decref(root);
     return done;
 }

@@ -14,6 +14,7 @@ json_t *recall_manifest(const char *run, struct error *error);
 
 /* Does the manifest say that this run came to its end? */
 bool recall_done(const char *run);
+bool recall_says_done(const json_t *manifest);
 
 /* If `run` is a run whose grains were coloured as `view` wants it, and view->range is open: takes
  * the range of that run. */

@@ -12,13 +12,26 @@
 
 enum { NAME_MAX_BYTES = 160, SHOWN_MAX = 48 };
 
+/* What a run that goes on may have otherwise: its end, and the room for the grains that come until
+ * then.  A key is followed by a blank in the text and by nothing as a name. */
+static bool may_differ(const char *key)
+{
+    static const char *const free_keys[] = {"until", "count_max"};
+    bool found = false;
+    for (size_t k = 0; k < sizeof free_keys / sizeof *free_keys; k++) {
+        const size_t length = strlen(free_keys[k]);
+        found = found || (strncmp(key, free_keys[k], length) == 0
+                          && (key[length] == ' ' || key[length] == 0));
+    }
+    return found;
+}
+
 uint64_t resolved_hash(const char *text)
 {
     uint64_t hash = ARCHIVE_HASH_START;
     while (*text) {
         const size_t length = strcspn(text, "\n"), indent = strspn(text, " ");
-        const bool counts = text[indent] != '#' && strncmp(text, "until ", 6) != 0;
-        if (counts) hash = archive_hash(hash, text, length);
+        if (text[indent] != '#' && !may_differ(text)) hash = archive_hash(hash, text, length);
         text += length + (text[length] == '\n');
     }
     return hash;
@@ -102,7 +115,7 @@ char *resolved_difference(const char *there, const char *here, char *text, size_
     struct walk walk = {.at = there}, other;
     text[0] = 0;
     while (walk_on(&walk)) {
-        if (strcmp(walk.name, "until") == 0) continue;
+        if (may_differ(walk.name)) continue;
         const bool found = find(&other, here, walk.name);
         const bool same = found && other.length == walk.length
                        && memcmp(other.value, walk.value, walk.length) == 0;
@@ -110,7 +123,7 @@ char *resolved_difference(const char *there, const char *here, char *text, size_
     }
     walk = (struct walk){.at = here};
     while (walk_on(&walk)) {
-        const bool counts = strcmp(walk.name, "until") != 0;
+        const bool counts = !may_differ(walk.name);
         if (counts && !find(&other, there, walk.name)) add(text, size, walk.name, NULL, &walk);
     }
     return text;

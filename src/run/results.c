@@ -54,7 +54,8 @@ static bool table_load(struct table *table, const char *path, struct error *erro
 {
     size_t size;
     *table = (struct table){.names = calloc(COLUMNS_MAX, sizeof *table->names)};
-    char *text = table->names ? file_load(path, (size_t)1 << 32, &size, error) : NULL;
+    if (!table->names) return error_set(error, "%s: not enough memory to read it", path);
+    char *text = file_load(path, (size_t)1 << 32, &size, error);
     if (!text) return false;
     uint32_t lines = 0;
     for (const char *at = text; *at; at++) lines += *at == '\n';
@@ -89,12 +90,12 @@ static int find_column(const struct table *table, const char *name)
 }
 
 /* The last value of a column, its mean over the time from `from` on, and the mean's error. */
-static void summarise(const struct table *table, const char *name, double from, double *scratch,
-                      double out[3])
+static bool summarise(const struct table *table, const char *name, double from, double *scratch,
+                      double out[3], struct error *error)
 {
     const int column = find_column(table, name), time = find_column(table, "time");
     out[0] = out[1] = out[2] = NAN;
-    if (column < 0 || time < 0 || table->rows == 0) return;
+    if (column < 0 || time < 0 || table->rows == 0) return true;
     size_t count = 0;
     for (uint32_t r = 0; r < table->rows; r++) {
         const double *row = table->values + (size_t)r * table->columns;
@@ -102,9 +103,11 @@ static void summarise(const struct table *table, const char *name, double from, 
         out[0] = row[column];
     }
     struct stats_mean mean;
-    if (count == 0 || !stats_mean(scratch, count, &mean, NULL)) return;
+    if (count == 0) return true;
+    if (!stats_mean(scratch, count, &mean, error)) return false;
     out[1] = mean.mean;
     out[2] = mean.error;
+    return true;
 }
 
 static double number_of(const json_t *object, const char *key)
@@ -114,13 +117,12 @@ static double number_of(const json_t *object, const char *key)
 }
 
 /* One line; the columns are those of the first run's log. */
-static bool write_point(const struct plan *plan, uint32_t point, const char *run, double from,
-                        struct table *first, FILE *stream, struct error *error)
+static bool write_point(const struct plan *plan, uint32_t point, const char *run,
+                        const json_t *manifest, double from, struct table *first, FILE *stream,
+                        struct error *error)
 {
     struct table table;
     char path[FILE_PATH_MAX];
-    json_t *manifest = recall_manifest(run, error);
-    if (!manifest) return false;
     bool done = table_load(&table, folder_path(path, run, "log.csv"), error);
     double *scratch = done ? calloc(table.rows + 1, sizeof *scratch) : NULL;
     if (scratch) {
@@ -142,11 +144,11 @@ static bool write_point(const struct plan *plan, uint32_t point, const char *run
                                   number_of(json_object_get(manifest, "counts"), "steps"),
                                   number_of(total, "wall")};
         csv_numbers(stream, ',', numbers, 3);
-        for (uint32_t c = 0; c < names->columns; c++) {
+        for (uint32_t c = 0; done && c < names->columns; c++) {
             const char *name = names->names[c];
             if (strcmp(name, "time") == 0 || strcmp(name, "steps") == 0) continue;
             double summary[3];
-            summarise(&table, name, from, scratch, summary);
+            done = summarise(&table, name, from, scratch, summary, error);
             csv_numbers(stream, ',', summary, 3);
         }
         fputc('\n', stream);
@@ -159,24 +161,25 @@ static bool write_point(const struct plan *plan, uint32_t point, const char *run
     }
     free(scratch);
     table_free(&table);
-    json_decref(manifest);
     return done;
 }
 
 /* The reason, quoted for CSV. */
-static void write_cause(const struct plan *plan, uint32_t point, const char *path, FILE *stream)
+static bool write_cause(const struct plan *plan, uint32_t point, const char *path, FILE *stream,
+                        struct error *error)
 {
-    struct error ignored;
     size_t size;
-    char *text = file_load(path, 1 << 16, &size, &ignored);
+    char *text = file_load(path, 1 << 16, &size, error);
+    if (!text) return false;
     plan_row(plan, point, stream);
     fputs(",\"", stream);
-    for (const char *at = text ? text : ""; *at; at++) {
+    for (const char *at = text; *at; at++) {
         if (*at == '"') fputc('"', stream);
         fputc(*at == '\n' ? ' ' : *at, stream);
     }
     fputs("\"\n", stream);
     free(text);
+    return true;
 }
 
 static bool write_tables(const struct plan *plan, uint32_t count, const char *directory,
@@ -189,15 +192,22 @@ static bool write_tables(const struct plan *plan, uint32_t count, const char *di
              && file_begin(&bad, folder_path(path, directory, "failed.csv"), error);
     uint32_t failures = 0;
     for (uint32_t point = 0; done && point < count; point++) {
-        if (recall_done(results_point(run, directory, point))) {
-            done = write_point(plan, point, run, from, &first, good.stream, error);
+        json_t *manifest = NULL;
+        results_point(run, directory, point);
+        if (file_exists(folder_path(path, run, "manifest.json"))) {
+            manifest = recall_manifest(run, error);
+            done = manifest != NULL;
+        }
+        if (recall_says_done(manifest)) {
+            done = write_point(plan, point, run, manifest, from, &first, good.stream, error);
         } else if (file_exists(results_cause(path, directory, point))) {
             if (failures++ == 0) {
                 plan_header(plan, bad.stream);
                 fputs(",cause\n", bad.stream);
             }
-            write_cause(plan, point, path, bad.stream);
+            done = done && write_cause(plan, point, path, bad.stream, error);
         }
+        json_decref(manifest);
     }
     table_free(&first);
     if (done) done = file_commit(&good, error);

@@ -69,8 +69,9 @@ static bool compare_scenes(struct run *run, const char *path)
     if (!same) resolved_difference(there, run->scene_text, difference, sizeof difference);
     free(there);
     return same || error_set_code(run->error, EXIT_USAGE, "%s: this run was made from another "
-        "scene or with other settings (only 'until' may differ): %s; `sandreel run %s --resume` "
-        "takes its own, or start anew with --force", run->directory, difference, run->directory);
+        "scene or with other settings (only 'until' and 'count_max' may differ): %s; `sandreel run "
+        "%s --resume` takes its own, or start anew with --force", run->directory, difference,
+        run->directory);
 }
 
 /* Writes the resolved scene beside its final name, which it gets from name_scene(). */

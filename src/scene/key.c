@@ -83,11 +83,14 @@ const struct key *key_find(const struct key_group *group, const char *name)
     return NULL;
 }
 
-enum { WORD_MAX = 64 };
+/* Words are compared up to WORD_MAX.  Nobody means one that is shorter or longer by LENGTHS_APART,
+ * so that its distance need not be found: a scene of nonsense asks for thousands. */
+enum { WORD_MAX = 64, LENGTHS_APART = 8 };
 
 uint32_t key_distance(const char *a, const char *b)
 {
     const size_t n = strnlen(a, WORD_MAX), m = strnlen(b, WORD_MAX);
+    if (n > m + LENGTHS_APART || m > n + LENGTHS_APART) return (uint32_t)(n > m ? n : m);
     uint32_t rows[3][WORD_MAX + 1];             /* the row before the last, the last, this one */
     uint32_t *before = rows[0], *last = rows[1], *row = rows[2];
     for (size_t j = 0; j <= m; j++) {

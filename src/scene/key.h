@@ -72,7 +72,8 @@ char *key_choice_word(const char *choices, int index, char *text, size_t size);
 const struct key *key_find(const struct key_group *group, const char *name);    /* NULL: none */
 
 /* Insertions, deletions, replacements and swaps of neighbours that turn one word into the other:
- * how the nearest known key is found. */
+ * how the nearest known key is found.  Words of very different length get the most it can be: the
+ * length of the longer. */
 uint32_t key_distance(const char *a, const char *b);
 
 #endif

@@ -207,20 +207,29 @@ static struct scene *scene_build(const struct scene_request *request,
 {
     struct scene *scene = scene_blank(request, source);
     if (!scene) return NULL;
-    if (!build_tree(scene, request, source, phase, findings) || !parse_scene(scene, findings)) {
-        if (scene->arena.failed) findings_tell_at(findings, FINDING_ERROR, source->file, 0,
-                                                  "not enough memory to read this scene");
-        scene_free(scene);
-        return NULL;
+    const uint32_t count = findings->count, errors = findings->errors,
+                   warnings = findings->warnings;
+    if (build_tree(scene, request, source, phase, findings) && parse_scene(scene, findings)) {
+        if (scene->quick) scene->quick_set.count = 0;   /* applied: the keys hold the values */
+        if (!isfinite(scene->view.window[0])) {
+            for (int k = 0; k < 4; k++) scene->view.window[k] = NAN;
+        }
+        resolve_radii(scene);
+        if (resolve_walls(scene)) {
+            scene->effects = scene_explain_effects(scene);
+            return scene;
+        }
     }
-    if (scene->quick) scene->quick_set.count = 0;       /* applied: the keys hold the values */
-    if (!isfinite(scene->view.window[0])) {
-        for (int k = 0; k < 4; k++) scene->view.window[k] = NAN;
+    if (scene->arena.failed) {
+        /* What else seemed wrong is that a part of the scene is missing. */
+        findings->count = count;
+        findings->errors = errors;
+        findings->warnings = warnings;
+        findings_tell_at(findings, FINDING_ERROR, source->file, 0,
+                         "not enough memory to read this scene");
     }
-    resolve_radii(scene);
-    resolve_walls(scene);
-    scene->effects = scene_explain_effects(scene);
-    return scene;
+    scene_free(scene);
+    return NULL;
 }
 
 static bool build_phases(struct scene *scene, const struct scene_request *request,

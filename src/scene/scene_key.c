@@ -191,7 +191,8 @@ static const struct key view_keys[] = {
 
 static const struct key measure_keys[] = {
     TEXTS(measure, fields, "names of the maps to make: density, velocity, ..."),
-    REAL(measure, cell, "nan", KEY_POSITIVE, FAR, "length", "of maps; absent: two mean diameters"),
+    REAL(measure, cell, "nan", KEY_POSITIVE, FAR, "length",
+         "of maps; absent: two mean diameters, in a huge box more"),
     CHOICE(measure, kernel, "gauss", "box|gauss|lucy", "how a grain is spread over a map"),
     REAL(measure, width, "nan", KEY_POSITIVE, FAR, "length", "of the kernel; absent: one cell"),
     VECTOR(measure, average, "nan", 0, FAR, "time",

@@ -18,7 +18,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 static const char plain[] = PLAIN,
     phased[] = PLAIN "phases = ( { time = 1.0; set = (\"grains.restitution=0.5\"); } );\n";
 
-enum { LINES_MAX = 8 };
+enum { LINES_MAX = 4 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

@@ -13,29 +13,68 @@
 
 enum { HOPS_MAX = 1 << 12 };
 
-/* The bit of a node in rows of `stride` words. */
-static uint64_t *word_of(const struct lga *lga, uint64_t *rows, size_t stride, uint32_t row,
-                         uint32_t x, uint64_t *bit)
+static const int hop_x[2][LGA_DIRECTIONS] = {{1, 0, -1, -1, -1, 0}, {1, 1, 0, -1, 0, 1}};
+static const int hop_y[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
+
+static uint32_t draw_direction(struct rng *rng)
 {
-    *bit = 1ull << x / lga->words;
-    return rows + row * stride + x % lga->words;
+    return (uint32_t)((rng_u64(rng) >> 32) * LGA_DIRECTIONS >> 32);
+}
+
+/* at + step, on a ring. */
+static uint32_t stepped(uint32_t at, int step, uint32_t length)
+{
+    const uint32_t to = at + (uint32_t)step;
+    return to == length ? 0 : to > length ? length - 1 : to;
 }
 
 enum found { WALKS_ON, RESTS, SINKS, BLOCKED };
 
-/* Tries a node of the fast form. */
-static enum found try_bits(struct lga *lga, uint32_t row, uint32_t x, bool heap)
+/* A node of the fast form: a bit of a word in each of its planes. */
+struct place { uint32_t row, word; uint64_t bit; };
+
+static enum found try_bits(struct lga *lga, struct place to, bool heap)
 {
     const struct lga_bits *bits = lga->bits;
-    uint64_t bit;
-    if (*word_of(lga, bits->wall + LGA_LANES, bits->stride, row, x, &bit) & bit) return BLOCKED;
-    if (bits->sink && *word_of(lga, bits->sink, bits->words, row, x, &bit) & bit) return SINKS;
-    uint64_t *rest = word_of(lga, bits->planes + LGA_DIRECTIONS * bits->words,
-                             (size_t)LGA_PLANES * bits->words, row, x, &bit);
-    if (*rest & bit) return WALKS_ON;
-    *rest |= bit;
-    if (heap) *word_of(lga, bits->heap + LGA_LANES, bits->stride, row, x, &bit) |= bit;
+    const size_t here = (size_t)to.row * bits->words + to.word;
+    const size_t apart = (size_t)to.row * bits->stride + LGA_LANES + to.word;
+    if (bits->wall[apart] & to.bit) return BLOCKED;
+    if (bits->sink && bits->sink[here] & to.bit) return SINKS;
+    uint64_t *rest = bits->planes + ((size_t)to.row * LGA_PLANES + LGA_DIRECTIONS) * bits->words
+                   + to.word;
+    if (*rest & to.bit) return WALKS_ON;
+    *rest |= to.bit;
+    if (heap) bits->heap[apart] |= to.bit;
     return RESTS;
+}
+
+/* The node beside it in its row: to the right of a row's last word is the next bit of the first.  A
+ * row's last node may be any; on a ring its neighbour is the first. */
+static struct place beside(struct place at, int step, struct place end, uint32_t words)
+{
+    if ((step > 0) & (at.bit == end.bit) & (at.word == end.word)) return (struct place){0, 0, 1};
+    if ((step < 0) & (at.bit == 1) & (at.word == 0)) return end;
+    const uint32_t word = at.word + (uint32_t)step;
+    const uint64_t bit = word == words ? at.bit << 1 : word > words ? at.bit >> 1 : at.bit;
+    return (struct place){0, stepped(at.word, step, words), bit};
+}
+
+/* In a large heap a grain takes thousands of hops, and nobody can foretell them: so the common ones
+ * have neither branches nor divisions. */
+static enum found walk_bits(struct lga *lga, struct rng *rng, uint32_t row, uint32_t x, bool heap)
+{
+    const uint32_t rows = lga->lattice.rows, words = lga->words, last = lga->lattice.columns - 1;
+    const struct place end = {0, last % words, 1ull << last / words};
+    struct place at = {row, x % words, 1ull << x / words};
+    for (uint32_t hop = 0; hop < HOPS_MAX; hop++) {
+        const uint32_t d = draw_direction(rng);
+        struct place to = beside(at, hop_x[at.row & 1][d], end, words);
+        to.row = stepped(at.row, hop_y[d], rows);
+        const enum found found = try_bits(lga, to, heap);
+        if (found == RESTS || found == SINKS) return found;
+        if (found == WALKS_ON) at = to;
+    }
+    return WALKS_ON;
 }
 
 static enum found try_bytes(struct lga *lga, uint32_t site, bool heap)
@@ -48,27 +87,20 @@ static enum found try_bytes(struct lga *lga, uint32_t site, bool heap)
     return RESTS;
 }
 
-static bool walk(struct lga *lga, struct rng *rng, uint32_t row, uint32_t x, bool heap)
+static enum found walk_bytes(struct lga *lga, struct rng *rng, uint32_t row, uint32_t x, bool heap)
 {
-    static const int dx[2][LGA_DIRECTIONS] = {{1, 0, -1, -1, -1, 0}, {1, 1, 0, -1, 0, 1}};
-    static const int dy[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
     const uint32_t columns = lga->lattice.columns, rows = lga->lattice.rows;
     for (uint32_t hop = 0; hop < HOPS_MAX; hop++) {
-        const uint32_t d = (uint32_t)((rng_u64(rng) >> 32) * LGA_DIRECTIONS >> 32);
-        const int shift = dx[row & 1][d];
-        const uint32_t to_x = shift < 0 ? (x ? x : columns) - 1
-                            : shift > 0 ? (x + 1 == columns ? 0 : x + 1) : x;
-        const uint32_t to_row = dy[d] < 0 ? (row ? row : rows) - 1
-                              : dy[d] > 0 ? (row + 1 == rows ? 0 : row + 1) : row;
-        const enum found found = lga->bits ? try_bits(lga, to_row, to_x, heap)
-                                           : try_bytes(lga, to_row * columns + to_x, heap);
+        const uint32_t d = draw_direction(rng);
+        const uint32_t to_x = stepped(x, hop_x[row & 1][d], columns);
+        const uint32_t to_row = stepped(row, hop_y[d], rows);
+        const enum found found = try_bytes(lga, to_row * columns + to_x, heap);
+        if (found == RESTS || found == SINKS) return found;
         if (found == BLOCKED) continue;
-        lga->grains_out += found == SINKS;
-        if (found != WALKS_ON) return true;
         row = to_row;
         x = to_x;
     }
-    return false;
+    return WALKS_ON;
 }
 
 void lga_walk(struct lga *lga, uint32_t site, uint32_t surplus, bool heap)
@@ -76,7 +108,9 @@ void lga_walk(struct lga *lga, uint32_t site, uint32_t surplus, bool heap)
     struct rng rng = rng_stream(lga->seed ^ heap, lga->ticks, site);
     for (; surplus > 0; surplus--) {
         const uint32_t row = site / lga->lattice.columns, x = site % lga->lattice.columns;
-        if (walk(lga, &rng, row, x, heap)) continue;
+        const enum found found = (lga->bits ? walk_bits : walk_bytes)(lga, &rng, row, x, heap);
+        lga->grains_out += found == SINKS;
+        if (found != WALKS_ON) continue;
         /* No place anywhere near: on it flies.  What was brought to rest has left slots free. */
         const struct lga_node node = lga_node_get(lga, site);
         assert(node.moving + 1 < LGA_STATES);
