@@ -50,9 +50,9 @@ static bool load(struct setup *setup, const struct cost_request *request,
     return false;
 }
 
-/* A cheap setting is run often, so that its error comes out of its noise; a dear one twice, the
- * least for which there is a noise. */
-enum { SEEDS_LEAST = 2 };
+/* A cheap setting is run often, so that its error comes out of its noise; a dear one three times:
+ * the scatter of two is too often small by chance. */
+enum { SEEDS_LEAST = 3 };
 static const double share_of_seeds = 0.25;      /* of the seconds that one run may take */
 
 static bool enough(const struct cost_request *request, uint32_t seeds, uint32_t most, double spent)

@@ -20,7 +20,7 @@
 #include <string.h>
 
 static const uint64_t seeds_default = 0;        /* as many as time allows */
-static const double seconds_default = 10, seconds_quick = 5;    /* of one run */
+static const double seconds_default = 10, seconds_quick = 4;    /* of one run */
 static const double error_least = 1e-6;         /* drawn; what is smaller stands there */
 static const double told_accuracies[] = {0.1, 0.03, 0.01, 0.003, 0.001};
 

@@ -96,7 +96,7 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
     X(budget,    "budget",    0,   "TIME",  NULL, FORM_PLAIN,                                   \
       "the nearest setting that takes no longer (60s, 10m), by `sandreel cost`")                \
     X(seeds,     "seeds",     0,   "N",     NULL, FORM_PLAIN,                                   \
-      "runs of each setting; default: 2 to 16, as many as take a quarter of --time-limit")      \
+      "runs of each setting; default: 3 to 16, as many as take a quarter of --time-limit")      \
     X(effects,   "effects",   0,   NULL,    NULL, FORM_PLAIN,                                   \
       "time and bytes per grain with each effect alone, all, none")                             \
     X(frame,     "frame",     0,   "N",     NULL, FORM_PLAIN,                                   \
