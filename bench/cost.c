@@ -50,15 +50,28 @@ static bool load(struct setup *setup, const struct cost_request *request,
     return false;
 }
 
+/* A cheap setting is run often, so that its error comes out of its noise; a dear one three times:
+ * the scatter of two is too often small by chance. */
+enum { SEEDS_LEAST = 3 };
+static const double share_of_seeds = 0.25;      /* of the seconds that one run may take */
+
+static bool enough(const struct cost_request *request, uint32_t seeds, uint32_t most, double spent)
+{
+    if (request->seeds > 0) return seeds == request->seeds;
+    return seeds == most
+        || (seeds >= SEEDS_LEAST && spent >= share_of_seeds * request->seconds);
+}
+
 /* Only the reference is kept: of all others the wall time is what is asked for. */
-static bool run_setting(const struct cost_request *request, unsigned observables,
+static bool run_setting(const struct cost_request *request, unsigned observables, uint32_t most,
                         struct cost_point *point, struct runs *runs, struct error *error)
 {
     const char *cache = point->reference ? request->cache : NULL;
     bool done = true;
+    double spent = 0;
     point->wall = point->cpu = INFINITY;
     point->cached = true;
-    for (uint32_t s = 0; done && s < request->seeds; s++) {
+    for (uint32_t s = 0; done && !enough(request, s, most, spent); s++) {
         struct setup setup;
         struct cost_rows *rows = &runs->seeds[s];
         done = load(&setup, request, point, s + 1, error);
@@ -72,6 +85,8 @@ static bool run_setting(const struct cost_request *request, unsigned observables
         if (done) {
             point->wall = fmin(point->wall, rows->wall);
             point->cpu = fmin(point->cpu, rows->cpu);
+            point->seeds = s + 1;
+            spent += fmin(rows->wall, rows->cpu);
             point->step = cost_settings_step(&setup);
         }
         setup_free(&setup);
@@ -132,11 +147,12 @@ static void compare_ways(const struct runs *runs, const struct runs *reference, 
 
 /* Seed by seed: both runs of a seed begin with the same grains, and what this does to them both
  * is no error.  The reference itself is compared with the mean of its seeds. */
-static void compare_row(const struct runs *runs, const struct runs *reference, uint32_t seeds,
+static void compare_row(const struct runs *runs, const struct runs *reference, uint32_t known,
                         int o, struct cost_point *point)
 {
+    const uint32_t seeds = point->seeds;
     double weights[ROW], off2 = 0, noise2 = 0;
-    if (!weigh(reference, seeds, o, weights)) return;
+    if (!weigh(reference, known, o, weights)) return;
     if (cost_row_measure((enum cost_observable)o) == COST_OF_LENGTH) {
         compare_ways(runs, reference, seeds, o, weights, point);
         return;
@@ -285,7 +301,6 @@ static bool begin(const struct cost_request *request, struct cost_table *table,
              : rests ? "md md.dt=*0.5" : "ed ed.t_c=*0.1");
     table->quick = scene->quick;
     table->hash = cost_cache_hash(request->path, request->overrides, request->override_count);
-    table->seeds = request->seeds;
     table->observables = cost_row_chosen(scene, error);
     return table->observables != 0;
 }
@@ -306,7 +321,10 @@ static bool run_reference(const struct cost_request *request, struct cost_table 
     }
     if (!done) return false;
     point->reference = true;
-    if (!run_setting(&more, table->observables, point, reference, error)) return false;
+    if (!run_setting(&more, table->observables, COST_SEEDS_MAX, point, reference, error)) {
+        return false;
+    }
+    table->seeds = point->seeds;
     compare(table, reference, reference, point);
     if (request->report) request->report(request->context, point);
     return point->ran || error_set(error, "%s: %s", table->scene, point->why);
@@ -319,7 +337,7 @@ static void try_setting(const struct cost_request *request, const char *setting,
     if (table->count == COST_POINTS_MAX || strcmp(setting, table->reference) == 0) return;
     struct cost_point *point = &table->points[table->count++];
     if (prepare(request, setting, point, &error)
-        && run_setting(request, table->observables, point, runs, &error)) {
+        && run_setting(request, table->observables, table->seeds, point, runs, &error)) {
         compare(table, runs, reference, point);
     } else {
         snprintf(point->why, sizeof point->why, "%.190s", error.text);
@@ -331,7 +349,8 @@ bool cost_measure(const struct cost_request *request, struct cost_table *table,
                   struct error *error)
 {
     *table = (struct cost_table){0};
-    assert(request->seeds > 1 && request->seeds <= COST_SEEDS_MAX);
+    assert(request->seeds != 1);
+    assert(request->seeds <= COST_SEEDS_MAX);
     struct setup setup = {0};
     struct runs *both = calloc(2, sizeof *both), *reference = both, *runs = both + 1;
     if (!both) return error_set(error, "not enough memory");

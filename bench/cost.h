@@ -21,6 +21,7 @@ struct cost_point {
     char   keys[COST_KEYS][COST_KEY];   /* as overrides, the model first */
     bool   ran, reference, front;       /* front: nothing is both faster and nearer */
     bool   cached;              /* all its seeds were known already */
+    uint32_t seeds;             /* that were run */
     double wall, cpu;           /* seconds of the model, the least of the seeds */
     double errors[COST_COUNT], noise[COST_COUNT];       /* NAN: not compared */
     double error, error_noise;  /* the largest of them, and its statistical error */
@@ -34,7 +35,8 @@ struct cost_order { char label[COST_KEY]; uint32_t points; double power, power_e
 struct cost_request {
     const char *path;
     const char *const *overrides;
-    uint32_t override_count, seeds;
+    uint32_t override_count;
+    uint32_t seeds;             /* of each setting; 0: as many as a quarter of `seconds` allows */
     double   seconds;           /* a setting that takes longer is left out */
     const char *cache;          /* directory of references; NULL: none are kept */
     void   (*report)(void *context, const struct cost_point *point);
@@ -48,7 +50,8 @@ struct cost_table {
     uint64_t hash;              /* of the scene as the request gives it (cost_cache.h) */
     unsigned observables;       /* bits of enum cost_observable */
     bool   quick;
-    uint32_t count, seeds, order_count;
+    uint32_t count, order_count;
+    uint32_t seeds;             /* of the reference: no setting has more */
     struct cost_point points[COST_POINTS_MAX];
     struct cost_order orders[COST_ORDERS_MAX];
 };

@@ -129,7 +129,8 @@ const struct command cli_commands[] = {
     {"cost", "SCENE", "what accuracy costs: error against wall time, for every model and setting",
      "Writes NAME-cost/ with cost.csv, cost.json and picture.png.  What is compared stands in\n"
      "`measure.cost` of the scene, with what in `measure.reference`.  A setting that takes longer\n"
-     "than --time-limit (10 s) is left out.  The reference is kept in $XDG_CACHE_HOME/sandreel.\n"
+     "than --time-limit (10 s; with --quick 4 s) is left out; a cheap one is run more often.  The\n"
+     "reference is kept in $XDG_CACHE_HOME/sandreel.\n"
      "`sandreel run SCENE --accuracy 1%` then takes the fastest one that is near enough.\n",
      cost_options, 1, 1, cli_cost},
     {"stress", "[CASE...]", "runs the hard cases and tells what each of them held",

@@ -19,8 +19,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const uint64_t seeds_default = 3;
-static const double seconds_default = 10;       /* of one run */
+static const uint64_t seeds_default = 0;        /* as many as time allows */
+static const double seconds_default = 10, seconds_quick = 4;    /* of one run */
 static const double error_least = 1e-6;         /* drawn; what is smaller stands there */
 static const double told_accuracies[] = {0.1, 0.03, 0.01, 0.003, 0.001};
 
@@ -105,10 +105,10 @@ static json_t *describe(const struct cost_table *table)
                                 json_pack("[f, f]", p->errors[o], p->noise[o]));
         }
         json_array_append_new(points, json_pack(
-            "{s:s, s:o, s:f, s:f, s:f, s:f, s:o, s:b, s:b, s:b}", "setting", p->label, "keys", keys,
-            "wall_seconds", p->wall, "cpu_seconds", p->cpu, "error", p->error, "error_noise",
-            p->error_noise, "observables", errors, "front", p->front, "reference", p->reference,
-            "cached", p->cached));
+            "{s:s, s:o, s:f, s:f, s:f, s:f, s:o, s:b, s:b, s:b, s:i}", "setting", p->label,
+            "keys", keys, "wall_seconds", p->wall, "cpu_seconds", p->cpu, "error", p->error,
+            "error_noise", p->error_noise, "observables", errors, "front", p->front,
+            "reference", p->reference, "cached", p->cached, "seeds", (int)p->seeds));
     }
     json_t *orders = json_array();
     for (uint32_t k = 0; k < table->order_count; k++) {
@@ -252,7 +252,7 @@ static bool draw(const struct cost_table *table, const char *directory, struct e
     struct words words = {0};
     char title[CHART_TEXT];
     bool done = false;
-    snprintf(title, sizeof title, "%.50s: error against %.70s, %u seeds", table->scene,
+    snprintf(title, sizeof title, "%.50s: error against %.70s, up to %u seeds", table->scene,
              table->reference, table->seeds);
     chart_begin(&chart, title, "wall time of the model [s]", "error");
     chart.log_x = chart.log_y = true;
@@ -313,10 +313,11 @@ int cli_cost(const struct options *options)
     char directory[FILE_PATH_MAX], kept[FILE_PATH_MAX];
     if (opening_threads(options, &error) == 0
         || !options_whole(options, OPTION_seeds, seeds_default, &seeds, &error)
-        || !options_real(options, OPTION_time_limit, seconds_default, &seconds, &error)) {
+        || !options_real(options, OPTION_time_limit, options_given(options, OPTION_quick)
+                         ? seconds_quick : seconds_default, &seconds, &error)) {
         return opening_fail(&error);
     }
-    if (seeds < 2 || seeds > COST_SEEDS_MAX) {
+    if (options_given(options, OPTION_seeds) && (seeds < 2 || seeds > COST_SEEDS_MAX)) {
         error_set_code(&error, EXIT_USAGE, "--seeds %llu: from 2 to %d, for an error of the mean",
                        (unsigned long long)seeds, COST_SEEDS_MAX);
         return opening_fail(&error);

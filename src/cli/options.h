@@ -95,7 +95,8 @@ enum option_form { FORM_PLAIN, FORM_WORD, FORM_LIST, FORM_SIZE, FORM_WORDS, FORM
       "the fastest setting within this error, by what `sandreel cost` measured")                \
     X(budget,    "budget",    0,   "TIME",  NULL, FORM_PLAIN,                                   \
       "the nearest setting that takes no longer (60s, 10m), by `sandreel cost`")                \
-    X(seeds,     "seeds",     0,   "N",     NULL, FORM_PLAIN, "runs of each setting; default: 3") \
+    X(seeds,     "seeds",     0,   "N",     NULL, FORM_PLAIN,                                   \
+      "runs of each setting; default: 3 to 16, as many as take a quarter of --time-limit")      \
     X(effects,   "effects",   0,   NULL,    NULL, FORM_PLAIN,                                   \
       "time and bytes per grain with each effect alone, all, none")                             \
     X(frame,     "frame",     0,   "N",     NULL, FORM_PLAIN,                                   \
