@@ -196,7 +196,7 @@ bool film_draw(struct film *film, const struct grains *grains, uint64_t steps, d
     set_variable(film, 1, "model", "%s", film->model->name);
     set_variable(film, 2, "seed", "%llu", (unsigned long long)film->scene->seed);
     set_variable(film, 3, "name", "%.60s", film->scene->name);
-    set_variable(film, 4, "wall", "%.1f", wall);
+    set_variable(film, 4, "wall", wall < 10 ? "%.2f" : "%.1f", wall);
     set_variable(film, 5, "method", "%s", film->model->name);
     struct field field = {0};
     set_variable(film, 6, "n", "%.0f", grains_number(grains));
