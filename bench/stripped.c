@@ -26,6 +26,21 @@ const struct stripped_kernel *stripped_find(const char *model)
     return NULL;
 }
 
+double stripped_apart(const struct simulation *sim, const double *places, double side)
+{
+    struct grains grains;
+    double worst = 0;
+    if (!grains_create(&grains, (uint32_t)simulation_count(sim).grains, 0, NULL)) return NAN;
+    simulation_observe(sim, &grains);
+    for (uint32_t k = 0; k < grains.count; k++) {
+        const double dx = grains.x[k] - places[2 * grains.id[k]];
+        const double dy = grains.y[k] - places[2 * grains.id[k] + 1];
+        worst = fmax(worst, hypot(dx - side * rint(dx / side), dy - side * rint(dy / side)));
+    }
+    grains_free(&grains);
+    return worst;
+}
+
 static int compare(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;

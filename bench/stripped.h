@@ -36,6 +36,10 @@ struct stripped_result {
     double apart;
 };
 
+/* The longest way between a grain of the model and its place by hand (x, y of each id), in a
+ * periodic square; NAN: no memory. */
+double stripped_apart(const struct simulation *sim, const double *places, double side);
+
 /* The kernel of that model; NULL if there is none. */
 const struct stripped_kernel *stripped_find(const char *model);
 

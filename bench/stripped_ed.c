@@ -421,23 +421,14 @@ static void *gas_open(const struct simulation *sim, double *bytes)
 static double gas_apart(const void *state, const struct simulation *sim)
 {
     const struct gas *g = state;
-    struct grains grains;
-    double worst = 0;
-    if (!grains_create(&grains, g->count, 0, NULL)) return NAN;
-    simulation_observe(sim, &grains);
     double *places = calloc(2 * (size_t)g->count, sizeof *places);
-    const double t = grains.time - g->epoch;
+    const double t = simulation_count(sim).time - g->epoch;
     for (uint32_t i = 0; places && i < g->count; i++) {
         places[2 * g->ids[i]] = g->grains[i].x + t * g->grains[i].vx;
         places[2 * g->ids[i] + 1] = g->grains[i].y + t * g->grains[i].vy;
     }
-    for (uint32_t k = 0; places && k < grains.count; k++) {
-        const double dx = grains.x[k] - places[2 * grains.id[k]];
-        const double dy = grains.y[k] - places[2 * grains.id[k] + 1];
-        worst = fmax(worst, hypot(dx - SIDE * rint(dx / SIDE), dy - SIDE * rint(dy / SIDE)));
-    }
+    const double worst = places ? stripped_apart(sim, places, SIDE) : NAN;
     free(places);
-    grains_free(&grains);
     return worst;
 }
 

@@ -307,22 +307,13 @@ static void gas_advance(void *state, double t_end)
 static double gas_apart(const void *state, const struct simulation *sim)
 {
     const struct gas *g = state;
-    struct grains grains;
-    double worst = 0;
-    if (!grains_create(&grains, g->count, 0, NULL)) return NAN;
-    simulation_observe(sim, &grains);
     double *places = calloc(2 * (size_t)g->count, sizeof *places);
     for (uint32_t k = 0; places && k < g->count; k++) {
         places[2 * g->ids[k]] = g->bodies[k].x;
         places[2 * g->ids[k] + 1] = g->bodies[k].y;
     }
-    for (uint32_t k = 0; places && k < grains.count; k++) {
-        const double dx = grains.x[k] - places[2 * grains.id[k]];
-        const double dy = grains.y[k] - places[2 * grains.id[k] + 1];
-        worst = fmax(worst, hypot(dx - SIDE * rint(dx / SIDE), dy - SIDE * rint(dy / SIDE)));
-    }
+    const double worst = places ? stripped_apart(sim, places, SIDE) : NAN;
     free(places);
-    grains_free(&grains);
     return worst;
 }
 
