@@ -28,6 +28,7 @@
 #include "base/archive.h"
 #include "base/arena.h"
 #include "base/error.h"
+#include "base/rng.h"
 #include "scene/scene.h"
 
 #include <stdbool.h>
@@ -218,7 +219,10 @@ uint32_t lga_dice_words(uint32_t columns);
 
 /* Where a row's random words come from. */
 struct lga_dice_source { uint64_t seed, tick; uint32_t row, stage; };
-uint64_t lga_dice_key(struct lga_dice_source source);
+static inline uint64_t lga_dice_key(struct lga_dice_source source)
+{
+    return rng_keyed(source.seed, source.tick, source.row, source.stage);
+}
 uint64_t lga_dice_now(const struct lga *lga, uint32_t row, enum lga_stage stage);
 enum lga_stage lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind);
 

@@ -173,14 +173,17 @@ static uint64_t collide(const struct lga *lga, uint32_t y, uint64_t *out, unsign
 {
     const struct lga_bits *bits = lga->bits;
     const struct lga_kernel *kernel = kernels[lga->simd];
-    const uint64_t *below = wall_row(bits, row_at(lga, y, -1));
-    const struct lga_row_collide row = {
+    struct lga_row_collide row = {
         .words = bits->words, .stride = bits->stride, .effects = effects,
         .key = lga_dice_key((struct lga_dice_source){lga->seed, lga->ticks, y, 0}),
         .dice = &lga->dice, .hits = lga_rate_row(lga, y), .in = plane(bits, y, 0),
-        .out = out, .wall = wall_row(bits, y), .wall_left = below + column_step[y & 1][4],
-        .wall_right = below + column_step[y & 1][5]
+        .out = out, .wall = wall_row(bits, y)
     };
+    if (effects & LGA_BITS_GRAVITY) {
+        const uint64_t *below = wall_row(bits, row_at(lga, y, -1));
+        row.wall_left = below + column_step[y & 1][4];
+        row.wall_right = below + column_step[y & 1][5];
+    }
     const bool rare = effects & (LGA_BITS_HELD | LGA_BITS_MIRROR);
     const unsigned index = effects & (LGA_BITS_LOSS | LGA_BITS_GRAVITY);
     return rare ? kernel->collide_any(&row) : kernel->collide[index](&row);
@@ -237,6 +240,25 @@ static void reflect(const struct lga *lga, const struct lga_row_stream *row)
     }
 }
 
+/* Where the movers of direction d come from. */
+static const uint64_t *source(const struct lga_bits *bits, uint32_t y, uint64_t *const ring[3],
+                              int d)
+{
+    const int back = (d + 3) % LGA_DIRECTIONS;
+    return ring[1 + row_step[back]] + (uint32_t)d * bits->stride + column_step[y & 1][back];
+}
+
+/* A row of a lattice that has no walls. */
+static void stream_free(const struct lga *lga, uint32_t y, uint64_t *const ring[3])
+{
+    const struct lga_bits *bits = lga->bits;
+    const uint64_t *from[LGA_PLANES];
+    for (int d = 0; d < LGA_DIRECTIONS; d++) from[d] = source(bits, y, ring, d);
+    from[LGA_DIRECTIONS] = ring[1] + LGA_DIRECTIONS * bits->stride;
+    kernels[lga->simd]->stream_free(plane(bits, y, 0), bits->words, from);
+    lga_bits_trim(lga, y);
+}
+
 static uint64_t stream(const struct lga *lga, uint32_t y, uint64_t *const ring[3], unsigned effects)
 {
     const struct lga_bits *bits = lga->bits;
@@ -248,7 +270,7 @@ static uint64_t stream(const struct lga *lga, uint32_t y, uint64_t *const ring[3
     };
     for (int d = 0; d < LGA_DIRECTIONS; d++) {
         const int back = (d + 3) % LGA_DIRECTIONS, shift = column_step[y & 1][back];
-        row.from[d] = ring[1 + row_step[back]] + (uint32_t)d * bits->stride + shift;
+        row.from[d] = source(bits, y, ring, d);
         row.wall_from[d] = wall_row(bits, row_at(lga, y, row_step[back])) + shift;
     }
     for (uint32_t p = 0; p < LGA_RING_PLANES; p++) row.own[p] = ring[1] + p * bits->stride;
@@ -260,7 +282,7 @@ static uint64_t stream(const struct lga *lga, uint32_t y, uint64_t *const ring[3
     }
     const bool rare = effects & (LGA_BITS_SINKS | LGA_BITS_HELD);
     const uint64_t left = bits->heap ? kernel->stream_heap(&row) : rare ? kernel->stream_any(&row)
-                        : kernel->stream[(effects & LGA_BITS_WALLS) != 0](&row);
+                        : kernel->stream_walls(&row);
     if (effects & LGA_BITS_MIRROR) reflect(lga, &row);
     lga_bits_trim(lga, y);
     return left;
@@ -280,6 +302,7 @@ static struct passed pass_band(const struct lga *lga, uint32_t band, unsigned ef
     const uint32_t before = (band + bits->bands - 1) % bits->bands;
     const uint32_t after = (band + 1) % bits->bands;
     uint64_t *ring[3] = {ring_row(bits, before, 1), ring_row(bits, band, 0), NULL};
+    const bool free = !(effects & (LGA_BITS_WALLS | LGA_BITS_SINKS | LGA_BITS_HELD));
     struct passed sum = {0};
     for (uint32_t y = y0; y < y1; y++) {
         if (y + 1 == y1) ring[2] = ring_row(bits, after, 0);
@@ -288,7 +311,8 @@ static struct passed pass_band(const struct lga *lga, uint32_t band, unsigned ef
             ring[2] = ring_row(bits, band, 2 + y % 3);
             sum.collisions += prepare(lga, y + 1, band, 2 + y % 3, effects);
         }
-        sum.left += stream(lga, y, ring, effects);
+        if (free) stream_free(lga, y, ring);
+        else sum.left += stream(lga, y, ring, effects);
         ring[0] = ring[1];
         ring[1] = ring[2];
     }

@@ -140,13 +140,14 @@ struct lga_row_arrive {
     uint64_t *out;
 };
 
-/* One set of instructions; the index is LGA_BITS_LOSS | LGA_BITS_GRAVITY, or walls yes or no. */
+/* One set of instructions; the index is LGA_BITS_LOSS | LGA_BITS_GRAVITY. */
 struct lga_kernel {
     void (*roll)(const struct lga_dice *dice, uint64_t key, uint32_t words,
                  uint64_t *const rows[LGA_DICE]);
     uint64_t (*collide[4])(const struct lga_row_collide *row);
     uint64_t (*collide_any)(const struct lga_row_collide *row);
-    uint64_t (*stream[2])(const struct lga_row_stream *row);
+    void (*stream_free)(uint64_t *out, uint32_t words, const uint64_t *const from[LGA_PLANES]);
+    uint64_t (*stream_walls)(const struct lga_row_stream *row);
     uint64_t (*stream_any)(const struct lga_row_stream *row);
     uint64_t (*stop)(const struct lga_row_stop *row);
     void (*fall)(const struct lga_row_fall *row);

@@ -9,8 +9,6 @@
  */
 #include "model/lga/lga.h"
 
-#include "base/rng.h"
-
 #include <assert.h>
 #include <math.h>
 
@@ -88,11 +86,6 @@ struct lga_dice lga_dice_of(const struct lga_rule *rule)
 uint32_t lga_dice_words(uint32_t columns)
 {
     return (columns + 64 * LGA_LANES - 1) / (64 * LGA_LANES) * LGA_LANES;
-}
-
-uint64_t lga_dice_key(struct lga_dice_source source)
-{
-    return rng_keyed(source.seed, source.tick, source.row, source.stage);
 }
 
 uint64_t lga_dice_now(const struct lga *lga, uint32_t row, enum lga_stage stage)

@@ -59,6 +59,12 @@ INLINE vec N(next)(struct N(stream) *s, int p)
     return word;
 }
 
+/* One block of bits, each set with chance 1/2. */
+INLINE void N(toss)(struct N(stream) *s, vec out[PARTS])
+{
+    for (int p = 0; p < PARTS; p++) out[p] = N(next)(s, p);
+}
+
 /* One block of bits, each set with the die's probability. */
 INLINE void N(roll)(struct N(stream) *s, struct lga_die die, vec out[PARTS])
 {
@@ -186,7 +192,7 @@ INLINE uint64_t N(collide_effects)(const struct lga_row_collide *row, unsigned e
     N(seed)(&s, row->key);
     for (uint32_t block = 0; block < words; block += LGA_LANES) {
         vec side[PARTS], kick[PARTS], falls[PARTS], left[PARTS], mirror[PARTS];
-        N(roll)(&s, row->dice->of[LGA_DIE_SIDE], side);
+        N(toss)(&s, side);
         if (effects & LGA_BITS_LOSS) N(roll)(&s, row->dice->of[LGA_DIE_KICK], kick);
         if (effects & LGA_BITS_GRAVITY) N(roll)(&s, row->dice->of[LGA_DIE_FALL], falls);
         if (effects & LGA_BITS_GRAVITY) N(roll)(&s, row->dice->of[LGA_DIE_FALL_SIDE], left);
@@ -246,6 +252,17 @@ INLINE uint64_t N(stream_effects)(const struct lga_row_stream *row, unsigned eff
     return left;
 }
 
+/* Where there are no walls: each plane from where its movers come. */
+KERNEL_TARGET static void N(stream_free)(uint64_t *out, uint32_t words,
+                                         const uint64_t *const from[LGA_PLANES])
+{
+    for (uint32_t w = 0; w < words; w += KERNEL_WIDTH) {
+        for (uint32_t d = 0; d < LGA_PLANES; d++) {
+            N(store)(out + d * words + w, N(load)(from[d] + w));
+        }
+    }
+}
+
 #include "model/lga/lga_kernel_gmlg.h"
 #include "model/lga/lga_kernel_sand.h"
 
@@ -253,7 +270,7 @@ INLINE uint64_t N(stream_effects)(const struct lga_row_stream *row, unsigned eff
     KERNEL_TARGET static uint64_t N(kind##_##e)(const struct lga_row_##kind *row) \
     { return N(kind##_effects)(row, e); }
 INSTANCE(collide, 0) INSTANCE(collide, 1) INSTANCE(collide, 2) INSTANCE(collide, 3)
-INSTANCE(stream, 0) INSTANCE(stream, 4)
+INSTANCE(stream, 4)
 /* What is rare (sinks, held grains, mirrors) is tested in the loop, on top of all else. */
 KERNEL_TARGET static uint64_t N(collide_any)(const struct lga_row_collide *row)
 {
@@ -282,7 +299,7 @@ KERNEL_TARGET static uint64_t N(gmlg_any)(const struct lga_row_gmlg *row)
 
 static const struct lga_kernel N(kernel) = {
     N(roll_row), {N(collide_0), N(collide_1), N(collide_2), N(collide_3)}, N(collide_any),
-    {N(stream_0), N(stream_4)}, N(stream_any),
+    N(stream_free), N(stream_4), N(stream_any),
     N(stop), N(fall_row), N(stream_heap), N(bind),
     N(survey), N(gmlg_free), N(gmlg_level), N(gmlg_vertical), N(gmlg_any), N(admit), N(arrive)
 };
