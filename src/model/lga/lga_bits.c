@@ -82,11 +82,13 @@ static uint64_t get_bit(const uint64_t *row, uint32_t words, uint32_t column)
 }
 
 /* Joins the ends of a row: the column behind the last one is the first, and so on around. */
-static void join_ends(uint64_t *row, uint32_t words, uint32_t columns)
+void lga_bits_join(const struct lga *lga, uint64_t *row)
 {
-    const bool full = columns == 64 * words;
-    if (!full) put_bit(row, words, columns, row[0] & 1);
-    row[-1] = (row[words - 1] << 1) | get_bit(row, words, columns - 1);
+    const struct lga_bits *bits = lga->bits;
+    const uint32_t words = bits->words;
+    const bool full = lga->lattice.columns == 64 * words;
+    if (!full) put_bit(row, words, lga->lattice.columns, row[0] & 1);
+    row[-1] = (row[words - 1] << 1) | (row[bits->last_word] >> bits->last_bit & 1);
     row[words] = row[0] >> 1;
     if (full) row[words] |= row[0] << 63;
 }
@@ -127,11 +129,6 @@ uint64_t *lga_bits_heap(const struct lga *lga, uint32_t row)
     return lga->bits->heap + (size_t)row * lga->bits->stride + LGA_LANES;
 }
 
-void lga_bits_join(const struct lga *lga, uint64_t *row)
-{
-    join_ends(row, lga->bits->words, lga->lattice.columns);
-}
-
 bool lga_bits_allocate(struct lga *lga)
 {
     struct arena *arena = &lga->arena;
@@ -140,6 +137,8 @@ bool lga_bits_allocate(struct lga *lga)
     const uint32_t rows = lga->lattice.rows, threads = (uint32_t)omp_get_max_threads();
     bits->words = lga->words;
     bits->stride = bits->words + 2 * LGA_LANES;
+    bits->last_word = (lga->lattice.columns - 1) % bits->words;
+    bits->last_bit = (lga->lattice.columns - 1) / bits->words;
     bits->bands = lga->sites < LGA_LOOP_MIN ? 1 : rows / 2 < threads ? rows / 2 : threads;
     const bool sandpile = lga->rule.method == LGA_SANDPILE, gmlg = lga->rule.method == LGA_GMLG;
     bits->depth = gmlg ? LGA_GMLG_PLANES : LGA_PLANES;
@@ -162,6 +161,7 @@ static unsigned effects_of(const struct lga *lga)
     unsigned effects = lga->bits->effects;      /* walls and sinks */
     if (!is_certain(lga->dice.of[LGA_DIE_KICK])) effects |= LGA_BITS_LOSS;
     if (lga->rule.gravity) effects |= LGA_BITS_GRAVITY;
+    if (lga->rate.now) effects |= LGA_BITS_RATE;
     if (lga->trapped) effects |= LGA_BITS_HELD | LGA_BITS_WALLS;
     const struct lga_die mirror = lga->dice.of[LGA_DIE_MIRROR];
     const bool mirrors = mirror.bits || mirror.threshold || lga->bits->heap;
@@ -176,16 +176,16 @@ static uint64_t collide(const struct lga *lga, uint32_t y, uint64_t *out, unsign
     struct lga_row_collide row = {
         .words = bits->words, .stride = bits->stride, .effects = effects,
         .key = lga_dice_key((struct lga_dice_source){lga->seed, lga->ticks, y, 0}),
-        .dice = &lga->dice, .hits = lga_rate_row(lga, y), .in = plane(bits, y, 0),
-        .out = out, .wall = wall_row(bits, y)
+        .dice = &lga->dice, .in = plane(bits, y, 0), .out = out, .wall = wall_row(bits, y)
     };
+    if (effects & LGA_BITS_RATE) row.hits = lga_rate_row(lga, y);
     if (effects & LGA_BITS_GRAVITY) {
         const uint64_t *below = wall_row(bits, row_at(lga, y, -1));
         row.wall_left = below + column_step[y & 1][4];
         row.wall_right = below + column_step[y & 1][5];
     }
     const bool rare = effects & (LGA_BITS_HELD | LGA_BITS_MIRROR);
-    const unsigned index = effects & (LGA_BITS_LOSS | LGA_BITS_GRAVITY);
+    const unsigned index = effects & (LGA_BITS_LOSS | LGA_BITS_GRAVITY | LGA_BITS_RATE);
     return rare ? kernel->collide_any(&row) : kernel->collide[index](&row);
 }
 
@@ -240,23 +240,10 @@ static void reflect(const struct lga *lga, const struct lga_row_stream *row)
     }
 }
 
-/* Where the movers of direction d come from. */
-static const uint64_t *source(const struct lga_bits *bits, uint32_t y, uint64_t *const ring[3],
-                              int d)
+/* Where in the ring's row of their start the movers of direction d come from, in words. */
+static ptrdiff_t source(const struct lga_bits *bits, uint32_t parity, int d)
 {
-    const int back = (d + 3) % LGA_DIRECTIONS;
-    return ring[1 + row_step[back]] + (uint32_t)d * bits->stride + column_step[y & 1][back];
-}
-
-/* A row of a lattice that has no walls. */
-static void stream_free(const struct lga *lga, uint32_t y, uint64_t *const ring[3])
-{
-    const struct lga_bits *bits = lga->bits;
-    const uint64_t *from[LGA_PLANES];
-    for (int d = 0; d < LGA_DIRECTIONS; d++) from[d] = source(bits, y, ring, d);
-    from[LGA_DIRECTIONS] = ring[1] + LGA_DIRECTIONS * bits->stride;
-    kernels[lga->simd]->stream_free(plane(bits, y, 0), bits->words, from);
-    lga_bits_trim(lga, y);
+    return d * (ptrdiff_t)bits->stride + column_step[parity][(d + 3) % LGA_DIRECTIONS];
 }
 
 static uint64_t stream(const struct lga *lga, uint32_t y, uint64_t *const ring[3], unsigned effects)
@@ -270,7 +257,7 @@ static uint64_t stream(const struct lga *lga, uint32_t y, uint64_t *const ring[3
     };
     for (int d = 0; d < LGA_DIRECTIONS; d++) {
         const int back = (d + 3) % LGA_DIRECTIONS, shift = column_step[y & 1][back];
-        row.from[d] = source(bits, y, ring, d);
+        row.from[d] = ring[1 + row_step[back]] + source(bits, y & 1, d);
         row.wall_from[d] = wall_row(bits, row_at(lga, y, row_step[back])) + shift;
     }
     for (uint32_t p = 0; p < LGA_RING_PLANES; p++) row.own[p] = ring[1] + p * bits->stride;
@@ -295,26 +282,59 @@ uint32_t lga_bits_band(const struct lga *lga, uint32_t band)
 
 struct passed { uint64_t collisions, left; };
 
+/* The rows around row y in the ring, as they are before streaming, of which the next one may still
+ * have to be collided. */
+static uint64_t advance_ring(const struct lga *lga, uint32_t y, uint32_t y1, uint32_t band,
+                             unsigned effects, uint64_t *ring[3])
+{
+    const struct lga_bits *bits = lga->bits;
+    ring[0] = ring[1];
+    ring[1] = ring[2];
+    if (y + 1 == y1) ring[2] = ring_row(bits, (band + 1) % bits->bands, 0);
+    else if (y + 2 == y1) ring[2] = ring_row(bits, band, 1);
+    else {
+        ring[2] = ring_row(bits, band, 2 + y % 3);
+        return prepare(lga, y + 1, band, 2 + y % 3, effects);
+    }
+    return 0;
+}
+
 static struct passed pass_band(const struct lga *lga, uint32_t band, unsigned effects)
 {
     const struct lga_bits *bits = lga->bits;
     const uint32_t y0 = lga_bits_band(lga, band), y1 = lga_bits_band(lga, band + 1);
     const uint32_t before = (band + bits->bands - 1) % bits->bands;
-    const uint32_t after = (band + 1) % bits->bands;
-    uint64_t *ring[3] = {ring_row(bits, before, 1), ring_row(bits, band, 0), NULL};
-    const bool free = !(effects & (LGA_BITS_WALLS | LGA_BITS_SINKS | LGA_BITS_HELD));
+    uint64_t *ring[3] = {NULL, ring_row(bits, before, 1), ring_row(bits, band, 0)};
     struct passed sum = {0};
     for (uint32_t y = y0; y < y1; y++) {
-        if (y + 1 == y1) ring[2] = ring_row(bits, after, 0);
-        else if (y + 2 == y1) ring[2] = ring_row(bits, band, 1);
-        else {
-            ring[2] = ring_row(bits, band, 2 + y % 3);
-            sum.collisions += prepare(lga, y + 1, band, 2 + y % 3, effects);
+        sum.collisions += advance_ring(lga, y, y1, band, effects, ring);
+        sum.left += stream(lga, y, ring, effects);
+    }
+    return sum;
+}
+
+/* The same for a lattice without walls: what a row of it has to look up is a few addresses. */
+static struct passed pass_free(const struct lga *lga, uint32_t band, unsigned effects)
+{
+    const struct lga_bits *bits = lga->bits;
+    const struct lga_kernel *kernel = kernels[lga->simd];
+    const uint32_t y0 = lga_bits_band(lga, band), y1 = lga_bits_band(lga, band + 1);
+    const uint32_t before = (band + bits->bands - 1) % bits->bands;
+    uint64_t *ring[3] = {NULL, ring_row(bits, before, 1), ring_row(bits, band, 0)};
+    ptrdiff_t offset[2][LGA_DIRECTIONS];
+    struct passed sum = {0};
+    for (uint32_t k = 0; k < 2; k++) {
+        for (int d = 0; d < LGA_DIRECTIONS; d++) offset[k][d] = source(bits, k, d);
+    }
+    for (uint32_t y = y0; y < y1; y++) {
+        sum.collisions += advance_ring(lga, y, y1, band, effects, ring);
+        const uint64_t *from[LGA_PLANES];
+        for (int d = 0; d < LGA_DIRECTIONS; d++) {
+            from[d] = ring[1 - row_step[d]] + offset[y & 1][d];
         }
-        if (free) stream_free(lga, y, ring);
-        else sum.left += stream(lga, y, ring, effects);
-        ring[0] = ring[1];
-        ring[1] = ring[2];
+        from[LGA_DIRECTIONS] = ring[1] + LGA_DIRECTIONS * bits->stride;
+        kernel->stream_free(plane(bits, y, 0), bits->words, from);
+        lga_bits_trim(lga, y);
     }
     return sum;
 }
@@ -323,6 +343,7 @@ void lga_bits_step(struct lga *lga)
 {
     const struct lga_bits *bits = lga->bits;
     const unsigned effects = effects_of(lga);
+    const bool walls = effects & (LGA_BITS_WALLS | LGA_BITS_SINKS | LGA_BITS_HELD);
     uint64_t collisions = 0, left = 0;
     if (lga->rule.method == LGA_GMLG) {
         lga_bits_gmlg_step(lga, kernels[lga->simd]);
@@ -340,7 +361,8 @@ void lga_bits_step(struct lga *lga)
     #pragma omp parallel for schedule(static, 1) reduction(+ : collisions, left) \
         if (bits->bands > 1)
     for (uint32_t band = 0; band < bits->bands; band++) {
-        const struct passed sum = pass_band(lga, band, effects);
+        const struct passed sum = walls ? pass_band(lga, band, effects)
+                                        : pass_free(lga, band, effects);
         collisions += sum.collisions;
         left += sum.left;
     }
@@ -386,7 +408,7 @@ void lga_bits_join_walls(struct lga *lga)
         for (uint32_t w = 0; w < bits->words; w++) {
             if (row[w]) bits->effects |= LGA_BITS_WALLS;
         }
-        join_ends(row, bits->words, lga->lattice.columns);
+        lga_bits_join(lga, row);
     }
 }
 

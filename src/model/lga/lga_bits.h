@@ -19,17 +19,20 @@ enum { LGA_PLANES = 7, LGA_RING = 6, LGA_RING_PLANES = LGA_PLANES + 2 };
 enum { LGA_PLANE_MIRROR = LGA_PLANES, LGA_PLANE_PLATE };
 
 enum {
-    LGA_BITS_LOSS = 1, LGA_BITS_GRAVITY = 2, LGA_BITS_WALLS = 4, LGA_BITS_SINKS = 8,
-    LGA_BITS_HELD = 16,         /* grains caught by a wall wait inside it */
-    LGA_BITS_MIRROR = 32,
-    LGA_BITS_VERTICAL = 64,     /* gmlg: gravity points along direction 3 */
-    LGA_BITS_TIGHT = 128        /* gmlg: a collision may need more room than a node has */
+    LGA_BITS_LOSS = 1, LGA_BITS_GRAVITY = 2,
+    LGA_BITS_RATE = 4,          /* collisions are counted at each node */
+    LGA_BITS_WALLS = 8, LGA_BITS_SINKS = 16,
+    LGA_BITS_HELD = 32,         /* grains caught by a wall wait inside it */
+    LGA_BITS_MIRROR = 64,
+    LGA_BITS_VERTICAL = 128,    /* gmlg: gravity points along direction 3 */
+    LGA_BITS_TIGHT = 256        /* gmlg: a collision may need more room than a node has */
 };
 
 enum { LGA_GMLG_PLANES = 9 };
 
 struct lga_bits {
     uint32_t words, stride;     /* of a plane of the state; of a row with a margin on each side */
+    uint32_t last_word, last_bit;   /* of a row: where its last column is */
     uint32_t depth;             /* planes of a row */
     uint32_t bands;             /* rows are shared out in so many parts */
     uint64_t *planes;           /* [row][plane][word] */
@@ -52,7 +55,7 @@ struct lga_row_collide {
     uint64_t key;               /* of the row's random words */
     const struct lga_dice *dice;
     const uint64_t *in;
-    uint64_t *out, *hits;       /* the row's digits of collisions counted; NULL: not asked for */
+    uint64_t *out, *hits;       /* the row's digits of collisions counted */
     const uint64_t *wall, *wall_left, *wall_right;      /* here, and where a grain would fall */
 };
 
@@ -140,11 +143,11 @@ struct lga_row_arrive {
     uint64_t *out;
 };
 
-/* One set of instructions; the index is LGA_BITS_LOSS | LGA_BITS_GRAVITY. */
+/* One set of instructions; the index is LGA_BITS_LOSS | LGA_BITS_GRAVITY | LGA_BITS_RATE. */
 struct lga_kernel {
     void (*roll)(const struct lga_dice *dice, uint64_t key, uint32_t words,
                  uint64_t *const rows[LGA_DICE]);
-    uint64_t (*collide[4])(const struct lga_row_collide *row);
+    uint64_t (*collide[8])(const struct lga_row_collide *row);
     uint64_t (*collide_any)(const struct lga_row_collide *row);
     void (*stream_free)(uint64_t *out, uint32_t words, const uint64_t *const from[LGA_PLANES]);
     uint64_t (*stream_walls)(const struct lga_row_stream *row);

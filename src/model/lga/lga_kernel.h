@@ -184,70 +184,72 @@ INLINE void N(fall)(vec m[6], vec *rest, vec falls, vec left, vec wall_left, vec
     *rest &= ~(goes_left | goes_right);
 }
 
-INLINE uint64_t N(collide_effects)(const struct lga_row_collide *row, unsigned effects)
+INLINE uint64_t N(collide_effects)(const struct lga_row_collide *given, unsigned effects)
 {
-    const uint32_t words = row->words;
+    const struct lga_row_collide row = *given;  /* what is stored cannot change the copy */
+    const uint32_t words = row.words;
     uint64_t collisions = 0;
     struct N(stream) s;
-    N(seed)(&s, row->key);
+    N(seed)(&s, row.key);
     for (uint32_t block = 0; block < words; block += LGA_LANES) {
         vec side[PARTS], kick[PARTS], falls[PARTS], left[PARTS], mirror[PARTS];
         N(toss)(&s, side);
-        if (effects & LGA_BITS_LOSS) N(roll)(&s, row->dice->of[LGA_DIE_KICK], kick);
-        if (effects & LGA_BITS_GRAVITY) N(roll)(&s, row->dice->of[LGA_DIE_FALL], falls);
-        if (effects & LGA_BITS_GRAVITY) N(roll)(&s, row->dice->of[LGA_DIE_FALL_SIDE], left);
-        if (effects & LGA_BITS_MIRROR) N(roll)(&s, row->dice->of[LGA_DIE_MIRROR], mirror);
+        if (effects & LGA_BITS_LOSS) N(roll)(&s, row.dice->of[LGA_DIE_KICK], kick);
+        if (effects & LGA_BITS_GRAVITY) N(roll)(&s, row.dice->of[LGA_DIE_FALL], falls);
+        if (effects & LGA_BITS_GRAVITY) N(roll)(&s, row.dice->of[LGA_DIE_FALL_SIDE], left);
+        if (effects & LGA_BITS_MIRROR) N(roll)(&s, row.dice->of[LGA_DIE_MIRROR], mirror);
         for (int p = 0; p < PARTS; p++) {
             const uint32_t w = block + (uint32_t)p * KERNEL_WIDTH;
-            vec m[6], r = N(load)(row->in + 6 * words + w);
+            vec m[6], r = N(load)(row.in + 6 * words + w);
             const vec all = ~(vec){0};
-            for (uint32_t d = 0; d < 6; d++) m[d] = N(load)(row->in + d * words + w);
+            for (uint32_t d = 0; d < 6; d++) m[d] = N(load)(row.in + d * words + w);
             if (effects & LGA_BITS_HELD) {
-                const vec fluid = ~N(load)(row->wall + w);
+                const vec fluid = ~N(load)(row.wall + w);
                 for (int d = 0; d < 6; d++) m[d] &= fluid;
                 r &= fluid;
             }
             const vec hit = N(collide)(m, &r, side[p], effects & LGA_BITS_LOSS ? kick[p] : all);
             collisions += N(count)(hit);
-            if (row->hits) N(note)(row->hits, words, w, hit);
+            if (effects & LGA_BITS_RATE) N(note)(row.hits, words, w, hit);
             if (effects & LGA_BITS_GRAVITY) {
-                N(fall)(m, &r, falls[p], left[p], N(load)(row->wall_left + w),
-                        N(load)(row->wall_right + w));
+                N(fall)(m, &r, falls[p], left[p], N(load)(row.wall_left + w),
+                        N(load)(row.wall_right + w));
             }
-            for (uint32_t d = 0; d < 6; d++) N(store)(row->out + d * row->stride + w, m[d]);
-            N(store)(row->out + 6 * row->stride + w, r);
+            for (uint32_t d = 0; d < 6; d++) N(store)(row.out + d * row.stride + w, m[d]);
+            N(store)(row.out + 6 * row.stride + w, r);
             if (effects & LGA_BITS_MIRROR) {
-                N(store)(row->out + LGA_PLANE_MIRROR * row->stride + w, mirror[p]);
+                N(store)(row.out + LGA_PLANE_MIRROR * row.stride + w, mirror[p]);
             }
         }
     }
     return collisions;
 }
 
-INLINE uint64_t N(stream_effects)(const struct lga_row_stream *row, unsigned effects)
+INLINE uint64_t N(stream_effects)(const struct lga_row_stream *given, unsigned effects)
 {
-    const uint32_t words = row->words;
+    const struct lga_row_stream row = *given;
+    const uint32_t words = row.words;
     uint64_t left = 0;
     for (uint32_t w = 0; w < words; w += KERNEL_WIDTH) {
         vec wall = {0}, sink = {0};
-        if (effects & LGA_BITS_WALLS) wall = N(load)(row->wall + w);
-        if (effects & LGA_BITS_SINKS) sink = N(load)(row->sink + w);
+        if (effects & LGA_BITS_WALLS) wall = N(load)(row.wall + w);
+        if (effects & LGA_BITS_SINKS) sink = N(load)(row.sink + w);
         for (uint32_t d = 0; d < 6; d++) {
-            vec m = N(load)(row->from[d] + w);
+            vec m = N(load)(row.from[d] + w);
             if (effects & LGA_BITS_WALLS) {
-                m |= N(load)(row->wall_from[d] + w) & N(load)(row->own[(d + 3) % 6] + w);
+                m |= N(load)(row.wall_from[d] + w) & N(load)(row.own[(d + 3) % 6] + w);
                 m &= ~wall;
             }
             if (effects & LGA_BITS_SINKS) {
                 left += N(count)(m & sink);
                 m &= ~sink;
             }
-            if (effects & LGA_BITS_HELD) m |= wall & N(load)(row->out + d * words + w);
-            N(store)(row->out + d * words + w, m);
+            if (effects & LGA_BITS_HELD) m |= wall & N(load)(row.out + d * words + w);
+            N(store)(row.out + d * words + w, m);
         }
-        vec r = N(load)(row->own[6] + w);
-        if (effects & LGA_BITS_HELD) r |= wall & N(load)(row->out + 6 * words + w);
-        N(store)(row->out + 6 * words + w, r);
+        vec r = N(load)(row.own[6] + w);
+        if (effects & LGA_BITS_HELD) r |= wall & N(load)(row.out + 6 * words + w);
+        N(store)(row.out + 6 * words + w, r);
     }
     return left;
 }
@@ -270,7 +272,8 @@ KERNEL_TARGET static void N(stream_free)(uint64_t *out, uint32_t words,
     KERNEL_TARGET static uint64_t N(kind##_##e)(const struct lga_row_##kind *row) \
     { return N(kind##_effects)(row, e); }
 INSTANCE(collide, 0) INSTANCE(collide, 1) INSTANCE(collide, 2) INSTANCE(collide, 3)
-INSTANCE(stream, 4)
+INSTANCE(collide, 4) INSTANCE(collide, 5) INSTANCE(collide, 6) INSTANCE(collide, 7)
+INSTANCE(stream, 8)
 /* What is rare (sinks, held grains, mirrors) is tested in the loop, on top of all else. */
 KERNEL_TARGET static uint64_t N(collide_any)(const struct lga_row_collide *row)
 {
@@ -298,8 +301,10 @@ KERNEL_TARGET static uint64_t N(gmlg_any)(const struct lga_row_gmlg *row)
 }
 
 static const struct lga_kernel N(kernel) = {
-    N(roll_row), {N(collide_0), N(collide_1), N(collide_2), N(collide_3)}, N(collide_any),
-    N(stream_free), N(stream_4), N(stream_any),
+    N(roll_row),
+    {N(collide_0), N(collide_1), N(collide_2), N(collide_3),
+     N(collide_4), N(collide_5), N(collide_6), N(collide_7)},
+    N(collide_any), N(stream_free), N(stream_8), N(stream_any),
     N(stop), N(fall_row), N(stream_heap), N(bind),
     N(survey), N(gmlg_free), N(gmlg_level), N(gmlg_vertical), N(gmlg_any), N(admit), N(arrive)
 };
