@@ -106,7 +106,7 @@ double md_law_contact_time(const struct scene *scene, const struct md_settings *
 struct md_force_out md_law_force(const struct md_law *law, const struct md_pair_law *pair,
                                  const struct md_touch *touch)
 {
-    struct md_force_out out = {0, 0, touch->spring};
+    struct md_force_out out = {0, 0, 0, 0};
     double stiffness = pair->stiffness;
     double damping = pair->damping + pair->damping_mass * sqrt(touch->mass);
     if (law->hertz) {
@@ -123,21 +123,21 @@ struct md_force_out md_law_force(const struct md_law *law, const struct md_pair_
     const double limit = pair->friction * fmax(out.normal, 0);
     const double drag = pair->drag + pair->drag_mass * touch->mass + pair->drag_share * damping;
     const double tangent = stiffness * pair->tangent;
-    const double stretched = touch->spring + touch->slip * touch->dt;
+    const double half = 0.5 * touch->slip * touch->dt, stretched = touch->spring + half;
     const double pull = -(tangent * stretched + drag * touch->slip);
     out.tangential = fmin(fmax(pull, -limit), limit);
-    if (law->spring) {
-        /* Sliding: the spring is kept at mu F / k_t. */
-        out.spring = out.tangential == pull ? stretched : -out.tangential / tangent;
-    }
+    if (!law->spring) return out;
+    const bool slides = out.tangential != pull;                 /* the spring stays at mu F / k_t */
+    out.stretched = slides ? -out.tangential / tangent : stretched;
+    out.spring = slides ? out.stretched : stretched + half;
     return out;
 }
 
 double md_law_energy(const struct md_law *law, const struct md_pair_law *pair, double overlap,
-                     double radius, double spring)
+                     double radius, double stretched)
 {
     const double root = law->hertz ? sqrt(radius * overlap) : 1;
     const double normal = law->hertz ? 4.0 / 15.0 * pair->stiffness * root * overlap * overlap
                                      : 0.5 * pair->stiffness * overlap * overlap;
-    return normal + 0.5 * pair->tangent * pair->stiffness * root * spring * spring;
+    return normal + 0.5 * pair->tangent * pair->stiffness * root * stretched * stretched;
 }

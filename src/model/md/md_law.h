@@ -9,7 +9,10 @@
  * corrected), m the reduced mass:
  *   viscous      -g v_t
  *   coulomb      -min(g |v_t|, mu F) sign(v_t)
- *   spring       -(k_t s + g v_t), at most mu F; the spring s is kept at the limit
+ *   spring       -(k_t s + g v_t), at most mu F; the spring s is kept at the limit.  Between steps
+ *                it is kept as it will be half a step later, s + v_t dt/2: so it grows by v_t dt
+ *                a step, and the force of each step is of second order.  With the whole step's
+ *                growth in the force it would be that of half a step later and damp by k_t dt/2.
  *   haff-werner  -min(gamma m |v_t|, mu F) sign(v_t)
  *
  * The point of contact divides the line of centres as the radii do, so the lever of a tangential
@@ -52,14 +55,17 @@ struct md_touch {
     double overlap, closing;    /* xi and xi' */
     double slip;                /* v_t */
     double mass, radius;        /* reduced */
-    double spring, dt;          /* spring before the step; dt 0: leave it */
+    double spring, dt;          /* s as the step before kept it */
 };
-struct md_force_out { double normal, tangential, spring; };
+struct md_force_out {
+    double normal, tangential;
+    double stretched, spring;   /* s now, and as it is kept for the next step */
+};
 struct md_force_out md_law_force(const struct md_law *law, const struct md_pair_law *pair,
                                  const struct md_touch *touch);
 
 /* Elastic energy of a contact. */
 double md_law_energy(const struct md_law *law, const struct md_pair_law *pair, double overlap,
-                     double radius, double spring);
+                     double radius, double stretched);
 
 #endif

@@ -69,14 +69,15 @@ static bool touch_pair(const struct md *md, uint32_t k, struct pair_touch *touch
         .overlap = reach - distance, .closing = -(ux * nx + uy * ny),
         .slip = uy * nx - ux * ny - distance / reach * (md_rim(md, i) + md_rim(md, j)),
         .mass = 1 / (md_inverse_mass(md, i) + md_inverse_mass(md, j)),
-        .radius = ri * rj / reach, .spring = md->springs ? md->springs[k] : 0,
+        .radius = ri * rj / reach, .spring = md->springs ? md->springs[k] : 0, .dt = md->dt,
     };
     const struct md_force_out force = md_law_force(&md->law, law, &contact);
     *touch = (struct pair_touch){
         .nx = nx, .ny = ny, .overlap = contact.overlap, .smaller = fmin(ri, rj),
         .fx = force.normal * nx - force.tangential * ny,
         .fy = force.normal * ny + force.tangential * nx,
-        .energy = md_law_energy(&md->law, law, contact.overlap, contact.radius, contact.spring),
+        .energy = md_law_energy(&md->law, law, contact.overlap, contact.radius,
+                                force.stretched),
     };
     return true;
 }
@@ -110,7 +111,7 @@ static void show_contacts(const struct md *md, const int64_t *entry, struct grai
         while (k < md->wall_link_count && md->wall_links[k].grain == i
                && k - first < GROUP_MAX) k++;
         if (entry[i] == OUTSIDE) continue;
-        md_walls_touch(md, first, k, 0, touches);
+        md_walls_touch(md, first, k, touches);
         for (uint32_t o = 0; o < k - first; o++) {
             if (!touches[o].counts) continue;
             const struct wall_nearest *nearest = &touches[o].nearest;
@@ -188,7 +189,7 @@ void md_look_count(const void *state, struct counters *out)
         const uint32_t first = k, i = md->wall_links[k].grain;
         while (k < md->wall_link_count && md->wall_links[k].grain == i
                && k - first < GROUP_MAX) k++;
-        md_walls_touch(md, first, k, 0, touches);
+        md_walls_touch(md, first, k, touches);
         for (uint32_t o = 0; o < k - first; o++) {
             if (!touches[o].counts) continue;
             out->potential_energy += touches[o].energy;

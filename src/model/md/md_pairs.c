@@ -147,10 +147,10 @@ FORCE_INLINE uint64_t forces(const struct md *md, struct md_window *restrict w, 
             double pull = -drag * slip, tangential;
             if (kernel & SPRING) {
                 const double tangent = stiffness * law.tangent;
-                const double stretched = w->spring[k] + slip * dt;
+                const double half = 0.5 * slip * dt, stretched = w->spring[k] + half;
                 pull -= tangent * stretched;
                 tangential = pull > limit ? limit : pull < -limit ? -limit : pull;
-                w->spring[k] = tangential == pull ? stretched : -tangential / tangent;
+                w->spring[k] = tangential == pull ? stretched + half : -tangential / tangent;
             } else {
                 tangential = pull > limit ? limit : pull < -limit ? -limit : pull;
             }

@@ -182,7 +182,7 @@ static bool stands_back(const struct md *md, const struct wall_link *links,
 }
 
 static void wall_force(const struct md *md, const struct wall_link *link, double spring,
-                       double dt, struct md_wall_touch *touch)
+                       struct md_wall_touch *touch)
 {
     const struct wall *wall = &md->walls_now[link->wall];
     const uint32_t i = link->grain;
@@ -212,7 +212,7 @@ static void wall_force(const struct md *md, const struct wall_link *link, double
         .slip = -ux * ny + uy * nx - touch->lever * md_rim(md, i),
         .mass = 1 / md_inverse_mass(md, i),
         .radius = radius,
-        .spring = spring, .dt = dt,
+        .spring = spring, .dt = md->dt,
     };
     const struct md_force_out force = md_law_force(&md->law, pair, &contact);
     touch->normal = force.normal;
@@ -220,10 +220,10 @@ static void wall_force(const struct md *md, const struct wall_link *link, double
     touch->spring = force.spring;
     touch->fx = force.normal * nx - force.tangential * ny;
     touch->fy = force.normal * ny + force.tangential * nx;
-    touch->energy = md_law_energy(&md->law, pair, touch->overlap, radius, spring);
+    touch->energy = md_law_energy(&md->law, pair, touch->overlap, radius, force.stretched);
 }
 
-void md_walls_touch(const struct md *md, uint32_t first, uint32_t last, double dt,
+void md_walls_touch(const struct md *md, uint32_t first, uint32_t last,
                     struct md_wall_touch *out)
 {
     const struct wall_link *links = &md->wall_links[first];
@@ -247,7 +247,7 @@ void md_walls_touch(const struct md *md, uint32_t first, uint32_t last, double d
         if (!out[k].counts) continue;
         const double spring = links[k].touches || !md->law.spring ? links[k].spring
                             : inherited_spring(md, links, out, count, k);
-        wall_force(md, &links[k], spring, dt, &out[k]);
+        wall_force(md, &links[k], spring, &out[k]);
     }
 }
 
@@ -278,7 +278,7 @@ void md_walls_push(struct md *md, uint32_t t, struct push *pushes, double *twist
         uint32_t last = k + 1;
         while (last < strip->wall_last && md->wall_links[last].grain == i
                && last - k < GROUP_MAX) last++;
-        md_walls_touch(md, k, last, md->dt, touches);
+        md_walls_touch(md, k, last, touches);
         for (uint32_t o = 0; k < last; k++, o++) {
             struct wall_link *link = &md->wall_links[k];
             if (touches[o].counts) {

@@ -26,8 +26,8 @@ struct md_wall_touch {
     double overlap, lever, fx, fy, normal, tangential, spring, energy;
     bool   counts;              /* touches, and is not a joint already counted */
 };
-/* All touches of the links first..last-1, which belong to one grain; dt 0 leaves the springs. */
-void md_walls_touch(const struct md *md, uint32_t first, uint32_t last, double dt,
+/* All touches of the links first..last-1, which belong to one grain. */
+void md_walls_touch(const struct md *md, uint32_t first, uint32_t last,
                     struct md_wall_touch *out);
 
 #endif
