@@ -100,7 +100,7 @@ struct strip_sums {             /* what a strip adds up in a step */
 enum {
     STRIP_GRAINS = 4096, STRIP_GRAINS_MAX = 16384,
     STRIPS_SHARED = 4,          /* many strips come in multiples of it, to share them out evenly */
-    WINDOW = 128
+    WINDOW = 256
 };
 
 struct md {

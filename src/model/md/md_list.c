@@ -114,15 +114,16 @@ static void lay_cells(struct md *md)
     struct md_scratch *s = md->scratch;
     const double *box = md->scene->box;
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (uint32_t i = 0; i < md->count; i++) {
+    const bool periodic[2] = {md->scene->left == BORDER_PERIODIC,
+                              md->scene->bottom == BORDER_PERIODIC};
+    const bool spread = !periodic[0] || !periodic[1];
+    for (uint32_t i = 0; spread && i < md->count; i++) {
         const double x = md->grains[i].x, y = md->grains[i].y;
         low[0] = x < low[0] ? x : low[0];
         high[0] = x > high[0] ? x : high[0];
         low[1] = y < low[1] ? y : low[1];
         high[1] = y > high[1] ? y : high[1];
     }
-    const bool periodic[2] = {md->scene->left == BORDER_PERIODIC,
-                              md->scene->bottom == BORDER_PERIODIC};
     double size = md->reach_max + md->skin;
     uint32_t cells[2];
     for (;; size *= 1.25) {
@@ -249,23 +250,29 @@ static void cut_strips(struct md *md)
     }
 }
 
+struct cell { uint32_t index, along, across; };         /* along the fast axis, and the slow one */
+
+/* The cell of grain i, from that of a grain before it: hardly ever is a row of cells passed. */
+FORCE_INLINE struct cell cell_on(const struct md_scratch *s, struct cell cell, uint32_t i)
+{
+    const uint32_t index = s->cell_of[s->order[i]];
+    cell.along += index - cell.index;
+    cell.index = index;
+    for (; cell.along >= s->fast; cell.across++) cell.along -= s->fast;
+    return cell;
+}
+
 /* Stretches of one cell's neighbourhood: grains first..last-1 seen as image `image`. */
 struct stretch { uint32_t first, last, image; };
 
-static uint32_t neighbourhood(const struct md *md, uint32_t cx, uint32_t cy,
-                              struct stretch out[static 9])
+static uint32_t near_border(const struct md *md, struct cell here, struct stretch out[static 9])
 {
     const struct md_scratch *s = md->scratch;
+    const uint32_t cx = s->x_is_fast ? here.along : here.across;
+    const uint32_t cy = s->x_is_fast ? here.across : here.along;
     const bool along_x = md->scene->left == BORDER_PERIODIC;
     const bool along_y = md->scene->bottom == BORDER_PERIODIC;
-    const uint32_t here = cell_index(s, cx, cy);
-    const uint32_t *const at = &s->cell_first[here];
     uint32_t count = 0;
-    if (cx > 0 && cy > 0 && cx + 1 < s->nx && cy + 1 < s->ny) {       /* nearly always */
-        out[0] = (struct stretch){at[0], at[2], 0};
-        out[1] = (struct stretch){at[s->fast - 1], at[s->fast + 2], 0};
-        return 2;
-    }
     for (int a = -1; a <= 1; a++) {
         for (int b = -1; b <= 1; b++) {
             const int dx = s->x_is_fast ? b : a, dy = s->x_is_fast ? a : b;
@@ -282,7 +289,7 @@ static uint32_t neighbourhood(const struct md *md, uint32_t cx, uint32_t cy,
                 ny = ny < 0 ? s->ny - 1 : 0;
             }
             const uint32_t cell = cell_index(s, (uint32_t)nx, (uint32_t)ny);
-            if (cell < here) continue;
+            if (cell < here.index) continue;
             const struct stretch next = {s->cell_first[cell], s->cell_first[cell + 1], image};
             struct stretch *before = count > 0 ? &out[count - 1] : NULL;
             if (before && before->last == next.first && before->image == image) {
@@ -293,6 +300,18 @@ static uint32_t neighbourhood(const struct md *md, uint32_t cx, uint32_t cy,
         }
     }
     return count;
+}
+
+FORCE_INLINE uint32_t neighbourhood(const struct md *md, struct cell here,
+                                    struct stretch out[static 9])
+{
+    const struct md_scratch *s = md->scratch;
+    const uint32_t *const at = &s->cell_first[here.index];
+    if (here.along == 0 || here.along + 1 == s->fast || here.across == 0
+        || here.across + 1 == s->slow) return near_border(md, here, out);
+    out[0] = (struct stretch){at[0], at[2], 0};
+    out[1] = (struct stretch){at[s->fast - 1], at[s->fast + 2], 0};
+    return 2;
 }
 
 /* Does link `at` of the new list go on with a contact that grain j had, one of those from `k` on?
@@ -306,48 +325,83 @@ static void carry_contact(const struct md *md, uint32_t k, uint32_t j, uint32_t 
     if (s->springs) s->springs[at] = md->springs[k];
 }
 
-/* Lists the links of strip t into its stretch of the scratch array: those within the strip from
- * below, those to later strips from above.  False: no room. */
+/* A strip's stretch of the scratch array: links within the strip from below, those to later strips
+ * from above. */
+struct listing { uint32_t begin, room, inner, cross, strip_last; };
+
+/* Lists the links of grain i to those near it.  False: no room. */
+FORCE_INLINE bool list_any(const struct md *md, struct listing *out, uint32_t i,
+                           struct stretch near, bool sizes)
+{
+    const struct md_scratch *s = md->scratch;
+    const struct trait *const traits = md->traits;
+    const double reach_one = 2 * md->radius_one + md->skin;
+    const double x = md->grains[i].x - md->image_x[near.image];
+    const double y = md->grains[i].y - md->image_y[near.image];
+    for (uint32_t j = near.first; j < near.last; j++) {
+        const double dx = x - md->grains[j].x, dy = y - md->grains[j].y;
+        const double reach = sizes ? traits[i].radius + traits[j].radius + md->skin : reach_one;
+        if (dx * dx + dy * dy >= reach * reach) continue;
+        if (out->inner + out->cross == out->room) return false;
+        const bool crosses = j >= out->strip_last;
+        const uint32_t at = out->begin + (crosses ? out->room - ++out->cross : out->inner++);
+        s->links[at] = (struct link){i, j | near.image << LINK_IMAGE_SHIFT};
+        if (s->springs) s->springs[at] = 0;
+        if (s->kept_first[i] != NONE) carry_contact(md, s->kept_first[i], j, at);
+    }
+    return true;
+}
+
+/* The same where nothing can be in the way: all within the strip and the box, room for all, no
+ * contacts to carry on.  Whether a pair is near is as good as random, so there is no branch. */
+FORCE_INLINE uint32_t list_plain(const struct md *md, struct link *links, uint32_t i,
+                                 struct stretch near, bool sizes)
+{
+    const struct grain *const grains = md->grains;
+    const struct trait *const traits = md->traits;
+    const double reach_one = 2 * md->radius_one + md->skin, skin = md->skin;
+    const double x = grains[i].x, y = grains[i].y;
+    uint32_t count = 0;
+    for (uint32_t j = near.first; j < near.last; j++) {
+        const double dx = x - grains[j].x, dy = y - grains[j].y;
+        const double reach = sizes ? traits[i].radius + traits[j].radius + skin : reach_one;
+        links[count] = (struct link){i, j};
+        count += dx * dx + dy * dy < reach * reach;
+    }
+    return count;
+}
+
 FORCE_INLINE bool list_strip(struct md *md, uint32_t t, bool sizes)
 {
     struct md_scratch *s = md->scratch;
     const struct strip *strip = &md->strips[t];
-    const struct trait *const traits = md->traits;
-    const double reach_one = 2 * md->radius_one + md->skin;
-    const uint32_t begin = strip->first * s->links_per_grain;
-    const uint32_t room = (strip->last - strip->first) * s->links_per_grain;
-    uint32_t inner = 0, cross = 0, cell = NONE, stretches = 0;
+    struct listing out = {
+        .begin = strip->first * s->links_per_grain,
+        .room = (strip->last - strip->first) * s->links_per_grain, .strip_last = strip->last
+    };
+    uint32_t cell_end = 0, stretches = 0;
     struct stretch around[9];
+    struct cell cell = {0};
     for (uint32_t i = strip->first; i < strip->last; i++) {
-        const struct grain *g = &md->grains[i];
-        const uint32_t cx = cell_along(g->x - s->x0, s->per_x, s->nx);
-        const uint32_t cy = cell_along(g->y - s->y0, s->per_y, s->ny);
-        if (cell != cell_index(s, cx, cy)) {
-            cell = cell_index(s, cx, cy);
-            stretches = neighbourhood(md, cx, cy, around);
+        if (i >= cell_end) {
+            cell = cell_on(s, cell, i);
+            cell_end = s->cell_first[cell.index + 1];
+            stretches = neighbourhood(md, cell, around);
         }
+        const bool carries = s->springs || s->kept_first[i] != NONE;
         for (uint32_t r = 0; r < stretches; r++) {
-            const uint32_t kept = s->kept_first[i];
-            const uint32_t first = around[r].first > i ? around[r].first : i + 1;
-            const double x = g->x - md->image_x[around[r].image];
-            const double y = g->y - md->image_y[around[r].image];
-            for (uint32_t j = first; j < around[r].last; j++) {
-                const struct grain *h = &md->grains[j];
-                const double dx = x - h->x, dy = y - h->y;
-                const double reach = sizes ? traits[i].radius + traits[j].radius + md->skin
-                                           : reach_one;
-                if (dx * dx + dy * dy >= reach * reach) continue;
-                if (inner + cross == room) return false;
-                const bool crosses = j >= strip->last;
-                const uint32_t at = begin + (crosses ? room - ++cross : inner++);
-                s->links[at] = (struct link){i, j | around[r].image << LINK_IMAGE_SHIFT};
-                if (s->springs) s->springs[at] = 0;
-                if (kept != NONE) carry_contact(md, kept, j, at);
+            struct stretch near = around[r];
+            near.first = near.first > i ? near.first : i + 1;
+            const bool fits = near.last + out.inner + out.cross <= near.first + out.room;
+            if (!carries && !near.image && near.last <= strip->last && fits) {
+                out.inner += list_plain(md, &s->links[out.begin + out.inner], i, near, sizes);
+            } else if (!list_any(md, &out, i, near, sizes)) {
+                return false;
             }
         }
     }
-    s->inner[t] = inner;
-    s->cross[t] = cross;
+    s->inner[t] = out.inner;
+    s->cross[t] = out.cross;
     return true;
 }
 

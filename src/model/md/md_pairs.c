@@ -9,18 +9,30 @@
 
 #include <math.h>
 
-enum { HERTZ = 1, TANGENTIAL = 2, SPRING = 4, MASSES = 8, MIXTURE = 16 };
+enum { HERTZ = 1, TANGENTIAL = 2, SPRING = 4, MASSES = 8, MIXTURE = 16, DAMPED = 32 };
 
-/* A spring needs a tangential force, a mixture needs masses. */
+/* A spring needs a tangential force, a mixture needs masses; what is not damped has no tangential
+ * force either, and asks for no velocity. */
 #define KERNELS(X) \
-    X(0) X(1) X(2) X(3) X(6) X(7) X(8) X(9) X(10) X(11) X(14) X(15)     \
-    X(24) X(25) X(26) X(27) X(30) X(31)
+    X(0) X(1) X(8) X(9) X(24) X(25) \
+    X(32) X(33) X(34) X(35) X(38) X(39) X(40) X(41) X(42) X(43) X(46) X(47)     \
+    X(56) X(57) X(58) X(59) X(62) X(63)
+
+static bool is_damped(const struct md *md)
+{
+    const uint32_t pairs = md->scene->species_count * md->scene->species_count;
+    for (uint32_t k = 0; k < pairs; k++) {
+        if (md->pairs[k].damping != 0 || md->pairs[k].damping_mass != 0) return true;
+    }
+    return false;
+}
 
 unsigned md_pairs_kernel(const struct md *md)
 {
     unsigned kernel = 0;
     if (md->law.hertz) kernel |= HERTZ;
     if (md->law.tangential) kernel |= TANGENTIAL;
+    if (md->law.tangential || is_damped(md)) kernel |= DAMPED;
     if (md->law.spring) kernel |= SPRING;
     if (md->effects & (EFFECT_POLYDISPERSE | EFFECT_MIXTURE)) kernel |= MASSES;
     if (md->effects & EFFECT_MIXTURE) kernel |= MIXTURE;
@@ -89,8 +101,10 @@ FORCE_INLINE void gather(const struct md *md, struct md_window *w, unsigned kern
         const struct trait *s = differ ? &md->traits[i] : NULL, *t = differ ? &md->traits[j] : NULL;
         w->i[k] = i;
         w->j[k] = j;
-        w->ux[k] = a->ux - b->ux;
-        w->uy[k] = a->uy - b->uy;
+        if (kernel & DAMPED) {
+            w->ux[k] = a->ux - b->ux;
+            w->uy[k] = a->uy - b->uy;
+        }
         if (kernel & TANGENTIAL) w->rims[k] = s->rim + t->rim;
         if (kernel & SPRING) w->spring[k] = md->springs[link];
         if (kernel & MASSES) {
@@ -123,9 +137,10 @@ FORCE_INLINE uint64_t forces(const struct md *md, struct md_window *restrict w, 
         const double nx = w->dx[k] * inverse, ny = w->dy[k] * inverse;
         const double reach = kernel & MASSES ? w->reach[k] : reach_one;
         const double overlap = reach - distance;
-        const double closing = -(w->ux[k] * nx + w->uy[k] * ny);
+        const double closing = kernel & DAMPED ? -(w->ux[k] * nx + w->uy[k] * ny) : 0;
         const double mass = 1 / (kernel & MASSES ? w->inverse_mass[k] : inverse_mass);
-        double stiffness = law.stiffness, damping = law.damping + law.damping_mass * sqrt(mass);
+        double stiffness = law.stiffness;
+        double damping = kernel & DAMPED ? law.damping + law.damping_mass * sqrt(mass) : 0;
         double normal;
         if (kernel & HERTZ) {
             const double product = kernel & MASSES ? w->radius_product[k] : product_one;
