@@ -17,6 +17,11 @@ struct dsmc_finder {
     uint32_t columns;
 };
 
+static inline bool dsmc_flight_wraps(const struct dsmc *dsmc)
+{
+    return dsmc->next_ax.wraps && dsmc->next_ay.wraps;
+}
+
 static inline struct dsmc_finder dsmc_flight_finder(const struct dsmc *dsmc)
 {
     const struct dsmc_axis *ax = &dsmc->next_ax, *ay = &dsmc->next_ay;
@@ -31,13 +36,18 @@ static inline struct dsmc_finder dsmc_flight_finder(const struct dsmc *dsmc)
 }
 
 /* The cells of two grains, as dsmc_cell() gives them.  What is no number, or too large for a whole
- * one, becomes negative and so 0. */
-FORCE_INLINE void dsmc_flight_two(const struct dsmc_finder *f, const vector8 *p, uint32_t cell[2])
+ * one, becomes negative and so 0.  `wraps`: the grid does, so all that is not inside is in 0. */
+FORCE_INLINE void dsmc_flight_two(const struct dsmc_finder *f, const vector8 *p, bool wraps,
+                                  uint32_t cell[2])
 {
     mask8 k = __builtin_convertvector(*p * f->per + f->offset, mask8);
-    const mask8 inside = k < f->cells;
-    k = (k & inside) | (f->beyond & ~inside);
-    k &= ~(k >> 31);
+    if (wraps) {
+        k &= (count8)k < (count8)f->cells;              /* what is negative counts as large */
+    } else {
+        const mask8 inside = k < f->cells;
+        k = (k & inside) | (f->beyond & ~inside);
+        k &= ~(k >> 31);
+    }
     const words4 words = (words4)k;                             /* x below, y above */
     cell[0] = (uint32_t)(words[0] >> 32) * f->columns + (uint32_t)words[0];
     cell[1] = (uint32_t)(words[2] >> 32) * f->columns + (uint32_t)words[2];
@@ -50,7 +60,7 @@ FORCE_INLINE uint32_t dsmc_flight_one(const struct dsmc_finder *f, vector4 p)
 {
     const vector8 both = TWICE(p);
     uint32_t cell[2];
-    dsmc_flight_two(f, &both, cell);
+    dsmc_flight_two(f, &both, false, cell);
     return cell[0];
 }
 

@@ -283,7 +283,7 @@ FORCE_INLINE void move_grain(struct sweep *sweep, uint32_t i, bool walls, bool s
     *at = p;
     const vector8 both = {old[0], old[1], old[2], old[3], p[0], p[1], p[2], p[3]};
     uint32_t cells[2];
-    dsmc_flight_two(&sweep->finder, &both, cells);
+    dsmc_flight_two(&sweep->finder, &both, false, cells);
     if (wall && is_far(sweep, cells[0], cells[1])) {
         dsmc->grains[i].x = before.x;
         dsmc->grains[i].y = before.y;

@@ -85,8 +85,8 @@ FORCE_INLINE void fly(struct dsmc *dsmc, const struct dsmc_flight *flight, struc
     share->gone = mine.gone;
 }
 
-/* The same where nothing is in the way: no walls, no open or sheared borders.  `falls`: there is
- * gravity; `alone`: there is one share, so that nobody leaves it. */
+/* The same where nothing is in the way: no walls, and the grid wraps in both directions.
+ * `falls`: there is gravity; `alone`: there is one share, so that nobody leaves it. */
 FORCE_INLINE void fly_freely(struct dsmc *dsmc, const struct dsmc_flight *f, struct run run,
                              struct dsmc_share *share, bool falls, bool alone)
 {
@@ -107,7 +107,7 @@ FORCE_INLINE void fly_freely(struct dsmc *dsmc, const struct dsmc_flight *f, str
         const vector8 down = (vector8)((mask8)by & (p >= above));
         p = p + up - down;
         *at = p;
-        dsmc_flight_two(&finder, &p, cell);
+        dsmc_flight_two(&finder, &p, true, cell);
         if (alone) {
             load[cell[0]]++;
             load[cell[1]]++;
@@ -159,7 +159,7 @@ static void fly_block(struct dsmc *dsmc, const struct dsmc_flight *f, struct run
     const bool falls = dsmc->effects & EFFECT_GRAVITY, alone = share->cells == dsmc->cells;
     if (walls) (shear ? fly_both : fly_walls)(dsmc, f, run, share);
     else if (shear) fly_shear(dsmc, f, run, share);
-    else if (!dsmc->ax.periodic || !dsmc->ay.periodic) fly_open(dsmc, f, run, share);
+    else if (!dsmc_flight_wraps(dsmc)) fly_open(dsmc, f, run, share);
     else if (falls) (alone ? fly_fall_alone : fly_fall)(dsmc, f, run, share);
     else (alone ? fly_free_alone : fly_free)(dsmc, f, run, share);
 }

@@ -257,7 +257,9 @@ FORCE_INLINE void copy_grains(const struct dsmc *dsmc, uint32_t first, uint32_t 
     }
 }
 
-CLONES static void scatter(const struct dsmc *dsmc, const struct dsmc_share *share)
+/* `alone`: there is one share, so that nobody leaves it. */
+FORCE_INLINE void scatter_grains(const struct dsmc *dsmc, const struct dsmc_share *share,
+                                 bool wraps, bool alone)
 {
     const struct dsmc_finder finder = dsmc_flight_finder(dsmc);
     const vector4 *from = (const vector4 *)(const void *)dsmc->grains;
@@ -269,16 +271,34 @@ CLONES static void scatter(const struct dsmc *dsmc, const struct dsmc_share *sha
         const uint32_t n = last - i < SCATTER ? last - i : SCATTER;
         uint32_t m = 0;
         for (; m + 1 < n; m += 2) {
-            dsmc_flight_two(&finder, (const vector8 *)(const void *)&from[i + m], &place[m]);
+            dsmc_flight_two(&finder, (const vector8 *)(const void *)&from[i + m], wraps, &place[m]);
         }
         if (m < n) place[m] = dsmc_flight_one(&finder, from[i + m]);
         for (uint32_t k = 0; k < n; k++) {
             const uint32_t cell = place[k];
-            place[k] = cell - begin < cells ? next[cell]++ : *away++;
+            place[k] = alone || cell - begin < cells ? next[cell]++ : *away++;
             __builtin_prefetch(&dsmc->sorted[place[k]], 1);
         }
         copy_grains(dsmc, first, i - first, n, place);
     }
+}
+
+/* X(name, wraps, alone) */
+#define SCATTERS(X) X(any, false, false) X(wrapped, true, false) X(alone, true, true)
+
+#define X(name, wraps, alone)                                                                   \
+    CLONES static void scatter_##name(const struct dsmc *dsmc, const struct dsmc_share *share)  \
+    {                                                                                           \
+        scatter_grains(dsmc, share, wraps, alone);                                              \
+    }
+SCATTERS(X)
+#undef X
+
+static void scatter(const struct dsmc *dsmc, const struct dsmc_share *share)
+{
+    if (!dsmc_flight_wraps(dsmc)) scatter_any(dsmc, share);
+    else if (share->cells == dsmc->cells) scatter_alone(dsmc, share);
+    else scatter_wrapped(dsmc, share);
 }
 
 static void deliver(struct dsmc *dsmc, const struct dsmc_share *share)

@@ -13,6 +13,7 @@ typedef int32_t mask4 __attribute__((vector_size(16)));
 /* Two records side by side: one register where the processor has wide ones. */
 typedef float vector8 __attribute__((vector_size(32), aligned(16), may_alias));
 typedef int32_t mask8 __attribute__((vector_size(32)));
+typedef uint32_t count8 __attribute__((vector_size(32)));
 typedef uint64_t words4 __attribute__((vector_size(32)));
 
 #endif
