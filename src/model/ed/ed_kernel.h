@@ -30,6 +30,7 @@ enum {
     LIST_ROOM = 128,            /* candidates tried at a time */
     AHEAD_CELLS = 8,            /* events ahead for which memory is asked for */
     AHEAD_GRAINS = 3,
+    FETCH_MIN = 30000,          /* grains; fewer of them lie in the cache anyway */
     CROWDED = 4096              /* events that arise in an open bucket before it is too wide */
 };
 
@@ -422,29 +423,33 @@ FORCE_INLINE void fetch_bucket(const struct ed *ed)
     __builtin_prefetch((const char *)&q->blocks[later->block] + 64);
 }
 
+/* What the loop counts; held in registers, so told apart from the clock. */
+struct tick { uint64_t events, epoch_most, stuck, stuck_most; };
+
 /* Is `now` still moving on?  Counts events against a mark on the clock. */
-FORCE_INLINE bool is_stuck(struct ed_clock *clock, uint64_t limit)
+FORCE_INLINE bool is_stuck(struct ed_clock *clock, struct tick *tick)
 {
     if (clock->now > clock->stuck_mark) {
         clock->stuck_mark = clock->now + clock->stuck_step;
-        clock->stuck_events = 0;
+        tick->stuck = 0;
         return false;
     }
-    return ++clock->stuck_events > limit;
+    return ++tick->stuck > tick->stuck_most;
 }
 
-FORCE_INLINE enum ed_stop run(struct ed *ed, double limit, uint64_t *budget, int with)
+/* The events until something else is due. */
+FORCE_INLINE enum ed_stop run_events(struct ed *ed, double limit, uint64_t budget,
+                                     struct tick *tick, int with)
 {
     struct ed_queue *q = &ed->queue;
     struct ed_clock *clock = &ed->clock;
-    const uint64_t epoch_events = 8ull * ed->count + 4096;
-    const uint64_t stuck_events = ed_stuck_events(ed->count);
+    const bool fetches = ed->count >= FETCH_MIN;
     for (;;) {
         struct ed_due first;
         bool from_heap, rebuild = false;
         if (!ed_queue_first(q, &first, &from_heap)) {
             if (ed_queue_open(q, ed->events, ed->count, limit, &rebuild)) {
-                fetch_bucket(ed);
+                if (fetches) fetch_bucket(ed);
             } else if (!rebuild) {
                 return ED_LIMIT;
             } else {
@@ -454,27 +459,39 @@ FORCE_INLINE enum ed_stop run(struct ed *ed, double limit, uint64_t *budget, int
         }
         if (first.t > limit) return ED_LIMIT;
         const bool old = first.id >= ed->count || ed->events[first.id].due != first.t;
-        if (!old && *budget == 0) return ED_BUDGET;
+        if (!old && tick->events == budget) return ED_BUDGET;
         if (from_heap) ed_queue_drop_heap_top(q);
         else q->ready_count--;
         if (old) continue;
-        if (q->ready_count >= AHEAD_CELLS) {
+        if (fetches && q->ready_count >= AHEAD_CELLS) {
             fetch_ahead(ed, q->ready[q->ready_count - AHEAD_CELLS].id);
         }
-        if (q->ready_count >= AHEAD_GRAINS) {
+        if (fetches && q->ready_count >= AHEAD_GRAINS) {
             fetch_grains(ed, q->ready[q->ready_count - AHEAD_GRAINS].id);
         }
         clock->now = first.t;
-        clock->events++;
-        clock->epoch_events++;
-        --*budget;
+        tick->events++;
         handle(ed, first.id, with);
         if (q->pushed > CROWDED) {
             ed_queue_rebuild(q, ed->events, ed->count, clock->now, 0.125 / q->per_time);
         }
-        if (is_stuck(clock, stuck_events)) return ED_STUCK;
-        if (clock->epoch_events > epoch_events || clock->now > clock->epoch_end) return ED_EPOCH;
+        if (is_stuck(clock, tick)) return ED_STUCK;
+        if (tick->events > tick->epoch_most || clock->now > clock->epoch_end) return ED_EPOCH;
     }
+}
+
+FORCE_INLINE enum ed_stop run(struct ed *ed, double limit, uint64_t *budget, int with)
+{
+    struct ed_clock *clock = &ed->clock;
+    const uint64_t epoch_events = 8ull * ed->count + 4096;
+    struct tick tick = {.stuck = clock->stuck_events, .stuck_most = ed_stuck_events(ed->count)};
+    if (epoch_events > clock->epoch_events) tick.epoch_most = epoch_events - clock->epoch_events;
+    const enum ed_stop stop = run_events(ed, limit, *budget, &tick, with);
+    clock->events += tick.events;
+    clock->epoch_events += tick.events;
+    clock->stuck_events = tick.stuck;
+    *budget -= tick.events;
+    return stop;
 }
 
 #define KERNEL(with)                                                                    \
