@@ -169,8 +169,8 @@ class Faults(unittest.TestCase):
                                            "output.dump=true", "-s", "output.contacts=true"])
         self.every_allocation("poor", ["run", "obstacle", "--quick", "--model", "dsmc", "--until",
                                        "0.003", "--size", "160x120", "-s", "output.maps=0.001"])
-        self.every_allocation("poor", ["run", "pile", "--quick", "--model", "lga", "--size",
-                                       "160x120"])
+        self.every_allocation("poor", ["run", "pile", "--quick", "--model", "lga", "--until", "1000",
+                                       "--size", "160x120", "-s", "output.checkpoint=400"])
 
     def test_every_allocation_of_the_other_commands_may_fail(self):
         self.every_allocation("poor.png", ["frame", "kept", "--forces", "--arrows", "--map",
@@ -182,7 +182,7 @@ class Faults(unittest.TestCase):
     SESSION = """pause
 step 3
 set gravity (2, -9)
-go until 0.1
+go until 0.02
 push 8 6 1 2 2
 map density
 color spin
@@ -193,10 +193,10 @@ checkpoint kept
 movie film.gif start
 pour 2
 tilt 10
-go until 0.2
+go until 0.04
 movie film.gif stop
 expect grains > 10
-back 0.1
+back 0.02
 """
 
     def test_every_allocation_of_films_sessions_studies_and_figures_may_fail(self):
@@ -206,7 +206,8 @@ back 0.1
             self.every_allocation("poor.gif", ["movie", "kept"])
             self.every_allocation("poor.gif", ["movie", rundir.DISCS_FILE, "--until", "0.1",
                                                "--model", "md,ed", "--side-by-side"])
-        self.every_allocation("poor-live", ["live", rundir.DISCS_FILE, "--commands", "session.txt"],
+        self.every_allocation("poor-live", ["live", rundir.DISCS_FILE, "--commands", "session.txt",
+                                            "-s", "output.frames=0.01", "-s", "output.log=0.01"],
                               stride=STRIDE if STRIDE == 1 else 6 * STRIDE)
         self.every_allocation("poor-study", ["sweep", rundir.DISCS_FILE, "--vary",
                                              "grains.restitution=0.5,0.6", "--until", "0.1"])

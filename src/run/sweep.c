@@ -4,6 +4,7 @@
  */
 #include "run/sweep.h"
 
+#include "base/text.h"
 #include "run/folder.h"
 #include "run/program.h"
 #include "run/ranks.h"
@@ -40,17 +41,16 @@ struct sweep {
 
 static char *plan_text(const struct plan *plan, uint32_t count)
 {
-    char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return NULL;
+    struct text text;
+    if (!text_begin(&text)) return text_end(&text, NULL);
+    FILE *out = text.stream;
     plan_header(plan, out);
     for (uint32_t point = 0; point < count; point++) {
         fputc('\n', out);
         plan_row(plan, point, out);
     }
     fputc('\n', out);
-    return fclose(out) == 0 ? text : NULL;
+    return text_end(&text, NULL);
 }
 
 /* plan.csv says what the directory is for: a study goes on only with the same points. */
