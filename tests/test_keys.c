@@ -122,9 +122,10 @@ static void try_in_scene(const struct key_group *group, bool list, const struct 
     struct error error = {.text = ""};
     const bool loaded = setup_load(&setup, &request, &error);
     if (loaded != accepted) {
+        const struct findings *found = setup.findings;
         fail_msg("%s.%s = %s: %s in a scene, and %s by -s: %s", group->name, key->name, words,
                  loaded ? "right" : "refused", accepted ? "right" : "refused",
-                 setup.findings && setup.findings->count ? setup.findings->list[0].text : error.text);
+                 found && found->count ? found->list[0].text : error.text);
     }
     setup_free(&setup);
     tried_in_scene++;
