@@ -123,13 +123,26 @@ class Faults(unittest.TestCase):
     def test_what_is_there_already_is_kept_unless_force_is_given(self):
         self.call("frame", "kept", "-o", "mine.png", *QUIET)
         for words in (["frame", "kept", "-o", "mine.png"], ["movie", "kept", "-o", "mine.gif"],
-                      ["map", "kept", "-o", "mymaps"]):
+                      ["map", "kept", "-o", "mymaps"], ["export", "kept", "-o", "mycsv"],
+                      ["plot", "kept", "--of", "energy", "-o", "myplots"],
+                      ["figure", "cooperative-11", "--quick", "-o", "myfigures"]):
             first = self.call(*words)
             if words[0] == "movie" and not shutil.which("ffmpeg"):
                 continue
             self.assertIn(first.returncode, (0, 2), first.stderr)
             self.assert_told(self.call(*words), 2, "--force", words[-1])
             self.assertEqual(self.call(*words, "--force").returncode, 0)
+
+    def test_a_table_that_no_study_left_is_not_overwritten_by_one(self):
+        os.mkdir(self.path("mine"))
+        with open(self.path("mine", "results.csv"), "w", encoding="ascii") as out:
+            out.write("precious\n")
+        study = ["sweep", rundir.DISCS_FILE, "--vary", "grains.restitution=0.5,0.6", "--until",
+                 "0.01", "-o", "mine"]
+        self.assert_told(self.call(*study), 2, "--force", "results.csv")
+        with open(self.path("mine", "results.csv"), encoding="ascii") as file:
+            self.assertEqual(file.read(), "precious\n")
+        self.assertEqual(self.call(*study, "--force").returncode, 0)
 
     # Memory
 

@@ -75,6 +75,11 @@ static bool settle_plan(const struct sweep *sweep, struct error *error)
     } else if (done && setup_is_run(request->directory)) {
         done = error_set_code(error, EXIT_USAGE, "%s: this directory holds a run; choose another "
                               "with -o", request->directory);
+    } else if (done && !request->force) {
+        /* Tables that no study left: without a plan there was none. */
+        char table[FILE_PATH_MAX];
+        done = file_absent(folder_path(table, request->directory, "results.csv"), error)
+            && file_absent(folder_path(table, request->directory, "failed.csv"), error);
     }
     if (done && !old) done = file_save(path, text, strlen(text), error);
     free(old);
