@@ -237,6 +237,9 @@ back 0.02
                                    SHIM_NO_LIBRARY="lib"), 1, "libosmesa6", "libegl1")
         self.assert_told(self.call("frame", "kept", "-o", "no.png", SANDREEL_FONT="/nowhere.ttf"), 1,
                          "/nowhere.ttf", "SANDREEL_FONT")
+        os.mkfifo(self.path("pipe.ttf"))
+        self.assert_told(self.call("frame", "kept", "-o", "no.png",
+                                   SANDREEL_FONT=self.path("pipe.ttf")), 1, "pipe.ttf")
         self.assert_told(self.call("frame", "kept", "-o", "no.png", SANDREEL_GL="vulkan"), 2,
                          "osmesa or egl")
         self.assertEqual(glob.glob(self.path("no.*")), [])
