@@ -6,6 +6,7 @@
 #include "model/model.h"
 #include "scene/scene.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 static struct findings findings;
@@ -169,6 +170,52 @@ static void test_an_include_is_found_beside_the_file_and_blamed_for_its_own_faul
     rmdir(folder);
 }
 
+static bool is_refused(const char *path, const char *why)
+{
+    const struct scene_request request = {.path = path};
+    memset(&findings, 0, sizeof findings);
+    struct scene *scene = scene_load(&request, &findings);
+    const bool refused = !scene && findings.count == 1 && strstr(findings.list[0].text, why);
+    scene_free(scene);
+    return refused;
+}
+
+/* libconfig itself ends the program at a directory and waits at a pipe. */
+static void test_what_is_no_scene_file_is_refused_as_an_include_and_as_a_scene(void **unused)
+{
+    (void)unused;
+    char folder[] = "/tmp/sandreel-include-XXXXXX", scene[100], part[100], text[200];
+    CHECK(mkdtemp(folder) != NULL);
+    snprintf(scene, sizeof scene, "%s/main.cfg", folder);
+    snprintf(part, sizeof part, "%s/part.cfg", folder);
+    write_file(scene, "/* \n@include \"no\" */ until = 1; # it counts at the beginning of a line\n"
+                      "  @include \"part.cfg\"\n");
+    CHECK(mkfifo(part, 0600) == 0);
+    CHECK(is_refused(scene, "part.cfg: not an ordinary file"));
+    CHECK(findings.list[0].line == 3);
+    CHECK(is_refused(part, "not an ordinary file"));
+    unlink(part);
+    CHECK(mkdir(part, 0700) == 0);
+    CHECK(is_refused(scene, "this is a directory"));
+    rmdir(part);
+    write_file(part, "@include \"part.cfg\"\n");
+    CHECK(is_refused(scene, "does it include itself?"));
+    struct error error;
+    CHECK(file_save(part, "/*\0*/", 5, &error));
+    CHECK(is_refused(scene, "holds zero bytes"));
+    write_file(scene, "@include \"a\\b\"\n");
+    CHECK(is_refused(scene, "no name of a file"));
+    snprintf(text, sizeof text, "until=1;\n@include \"%s\"\n", folder);
+    const char *overrides[] = {text};
+    write_file(scene, "until = 1; box = (0, 0, 10, 5); grains = ({ radius = 0.5; });\n");
+    const struct scene_request request = {.path = scene, .overrides = overrides,
+                                          .override_count = 1};
+    CHECK(scene_load(&request, &findings) == NULL);
+    unlink(scene);
+    unlink(part);
+    rmdir(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -178,6 +225,7 @@ int main(void)
         cmocka_unit_test(test_numbers_that_are_none_are_refused),
         cmocka_unit_test(test_the_quick_form_yields_to_overrides),
         cmocka_unit_test(test_an_include_is_found_beside_the_file_and_blamed_for_its_own_faults),
+        cmocka_unit_test(test_what_is_no_scene_file_is_refused_as_an_include_and_as_a_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -61,9 +61,11 @@ bool file_save(const char *path, const void *bytes, size_t size, struct error *e
 void *file_load(const char *path, size_t size_max, size_t *size, struct error *error)
 {
     struct stat status = {0};
-    FILE *stream = fopen(path, "rb");
+    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);    /* no wait for a pipe */
+    FILE *stream = file >= 0 ? fdopen(file, "rb") : NULL;
     if (!stream) {
         error_set(error, "%s: cannot open this file: %s", path, strerror(errno));
+        if (file >= 0) close(file);
         return NULL;
     }
     char *bytes = NULL;

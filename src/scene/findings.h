@@ -20,7 +20,7 @@ struct finding {
     char text[512];             /* what, why, cure; no line feed */
 };
 
-enum { FINDINGS_MAX = 200 };    /* more are counted, not kept */
+enum { FINDINGS_MAX = 100 };    /* more are counted, not kept */
 
 struct findings {
     uint32_t count, errors, warnings;       /* all that were told, kept or not */

@@ -7,6 +7,8 @@
  */
 #include "scene/tree.h"
 
+#include "scene/include.h"
+
 #include <ctype.h>
 #include <libconfig.h>
 #include <stdio.h>
@@ -21,8 +23,7 @@ static const char *text_copy(struct arena *arena, const char *text)
     return copy;
 }
 
-/* Where the comment or the string that begins at `at` ends; NULL if neither begins there. */
-static char *skip_quiet(char *at)
+const char *tree_quiet_end(const char *at)
 {
     if (*at == '"') {
         for (at++; *at && *at != '"'; at++) if (*at == '\\' && at[1]) at++;
@@ -30,7 +31,7 @@ static char *skip_quiet(char *at)
     }
     if (*at == '#' || (*at == '/' && at[1] == '/')) return at + strcspn(at, "\n");
     if (*at == '/' && at[1] == '*') {
-        char *end = strstr(at + 2, "*/");
+        const char *end = strstr(at + 2, "*/");
         return end ? end + 2 : at + strlen(at);
     }
     return NULL;
@@ -39,9 +40,9 @@ static char *skip_quiet(char *at)
 static void brackets_to_parentheses(char *text)
 {
     for (char *at = text; *at;) {
-        char *end = skip_quiet(at);
+        const char *end = tree_quiet_end(at);
         if (end) {
-            at = end;
+            at += end - at;
             continue;
         }
         if (*at == '[') *at = '(';
@@ -130,12 +131,13 @@ static void tell_syntax(struct findings *findings, const config_t *config, const
 struct tree *tree_read(struct arena *arena, const char *text, const char *file,
                        const char *include_folder, struct findings *findings)
 {
+    if (!include_check(text, file, include_folder, findings)) return NULL;
     char *copy = strdup(text);
     if (!copy) return NULL;
     brackets_to_parentheses(copy);
     config_t config;
     config_init(&config);
-    if (include_folder) config_set_include_dir(&config, include_folder);
+    config_set_include_dir(&config, include_folder);
     struct tree *root = NULL;
     if (config_read_string(&config, copy)) {
         root = node_copy(arena, config_root_setting(&config), file, 0);
@@ -156,7 +158,7 @@ struct tree *tree_value(struct arena *arena, const char *text, const char *file,
     config_init(&config);
     if (asprintf(&copy, "value = %s;", text) >= 0) {
         brackets_to_parentheses(copy);
-        const bool sound = config_read_string(&config, copy);
+        const bool sound = !include_used(copy) && config_read_string(&config, copy);
         config_setting_t *root = sound ? config_root_setting(&config) : NULL;
         if (root && config_setting_length(root) == 1) {
             node = node_copy(arena, config_setting_get_elem(root, 0), file, line ? line : -1);

@@ -33,9 +33,12 @@ struct tree {
 struct scene_places { struct tree *root; const char *file; };
 
 /* Parses a whole scene text.  NULL after telling a finding (syntax) or if memory is short.
- * `include_folder` (may be NULL) is where @include looks. */
+ * `include_folder` is where @include looks. */
 struct tree *tree_read(struct arena *arena, const char *text, const char *file,
                        const char *include_folder, struct findings *findings);
+
+/* Where the comment or the string that begins at `at` ends; NULL if neither begins there. */
+const char *tree_quiet_end(const char *at);
 
 /* Parses a single value, as after "key ="; what is no libconfig value is taken as a text. */
 struct tree *tree_value(struct arena *arena, const char *text, const char *file, int line);
