@@ -147,6 +147,50 @@ static void test_a_lossy_sandpile_cools_and_never_warms(void **unused)
     check_cooling(rule, true, (const double[4]){0.8309, 0.5494, 0.2484, 0.0461});
 }
 
+/* Movers a node of a torus with `density` grains a node, once gains and losses are equal. */
+static double steady_movers(struct lga_rule rule, double density)
+{
+    enum { TICKS = 512, LOOKS = 16, EVERY = 16 };
+    struct lga *lga = gas(SIDE, SIDE, rule, 1);
+    uint64_t state = 5;
+    double sum = 0;
+    gas_set_kinds(lga, NULL);
+    for (uint32_t n = 0; n < lga->sites; n++) {
+        const unsigned moving = gas_movers(&state, density / 7);
+        lga_node_set(lga, n, moving, gas_unit(&state) < density / 7);
+    }
+    for (int t = 0; t < TICKS; t++) lga_step(lga);
+    for (int k = 0; k < LOOKS; k++) {
+        for (int t = 0; t < EVERY; t++) lga_step(lga);
+        sum += (double)totals(lga).movers / (double)lga->sites / LOOKS;
+    }
+    gas_free(lga);
+    return sum;
+}
+
+static void test_the_pressure_of_a_lossy_gas_rises_with_its_density(void **unused)
+{
+    (void)unused;
+    /* Grains gather in clusters where the pressure falls as the density rises: what is denser loses
+     * more, and is pushed together by what is around it.  A mover has one speed, so the pressure is
+     * half of the movers a node, and in no automaton, at no share of loss, does it fall: that is
+     * why they do not cluster.  Sixteen looks at 16384 nodes know the movers a node to 0.003; the
+     * steps between these densities are 0.04 and more. */
+    static const double density[] = {0.3, 0.7, 1.5, 2.5, 4}, loss[] = {0.1, 0.5, 0.9};
+    for (int method = LGA_GMLG; method <= LGA_SANDPILE; method++) {
+        for (size_t k = 0; k < sizeof loss / sizeof *loss; k++) {
+            const struct lga_rule rule = {.method = (enum lga_method)method, .gain = 1,
+                                          .loss = loss[k], .inelastic = loss[k]};
+            double before = 0;
+            for (size_t i = 0; i < sizeof density / sizeof *density; i++) {
+                const double movers = steady_movers(rule, density[i]);
+                CHECK(movers > before + 0.02);
+                before = movers;
+            }
+        }
+    }
+}
+
 int main(void)
 {
     lga_table_fill(&table);
@@ -158,6 +202,7 @@ int main(void)
         cmocka_unit_test(test_in_equilibrium_all_seven_slots_are_equally_full),
         cmocka_unit_test(test_without_loss_a_sandpile_is_a_gas_that_keeps_its_energy),
         cmocka_unit_test(test_a_lossy_sandpile_cools_and_never_warms),
+        cmocka_unit_test(test_the_pressure_of_a_lossy_gas_rises_with_its_density),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -224,12 +224,12 @@ static void measure_heap(const struct lga *lga, struct shape *shape)
     sample_add(&shape->rms_line, tail.rms_line);
 }
 
-static struct shape shape_of(double loss, double fall)
+static struct shape shape_of(double loss, double fall, uint64_t seeds)
 {
     struct shape shape;
     char name[80];
     memset(&shape, 0, sizeof shape);
-    for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+    for (uint64_t seed = 1; seed <= seeds; seed++) {
         struct lga *lga = heap_poured(loss, fall, seed);
         assert_int_equal(totals(lga).mass + (int64_t)lga->grains_out, GRAINS);
         measure_heap(lga, &shape);
@@ -248,31 +248,34 @@ static struct shape shape_of(double loss, double fall)
 static void test_a_poured_heap_is_almost_as_steep_as_the_lattice(void **unused)
 {
     (void)unused;
-    /* The reference's errors of three seeds are 0.1 degrees for the upper slope, 0.4 for m and 0.2
-     * for l/r, and ours as large: four of its own leave room for both, and 0.2 degrees more for
-     * which part of a flank is upper. */
-    const struct shape shape = shape_of(0.5, 0.5);
-    CHECK_NEAR(sample_mean(&shape.slope), 56.5, 4 * 0.1 + 0.2);
-    CHECK_NEAR(sample_mean(&shape.angle), 58.5, 4 * 0.4);
-    CHECK_NEAR(sample_mean(&shape.tail), 1.8, 4 * 0.2);
+    /* Single seeds of ours scatter by 0.6 degrees in the slope and by 0.3 in l/r, so three of the
+     * reference are known to 0.34 and 0.17 and not better, whatever they happened to show (0.1 and
+     * 0.4 degrees, 0.2), and twelve of ours to half of that.  Two of both are allowed. */
+    const struct shape shape = shape_of(0.5, 0.5, 12);
+    CHECK_NEAR(sample_mean(&shape.slope), 56.5, 2 * hypot(0.34, 0.17));
+    CHECK_NEAR(sample_mean(&shape.angle), 58.5, 2 * hypot(0.4, 0.18));
+    CHECK_NEAR(sample_mean(&shape.tail), 1.8, 2 * hypot(0.2, 0.09));
     /* Single seeds gave 0.32 to 0.36 nodes and 0.70 to 1.02: a range is about 1.7 deviations. */
     CHECK_NEAR(sample_mean(&shape.rms), 0.34, 2 * 0.02);
     CHECK_NEAR(sample_mean(&shape.rms_line), 0.86, 2 * 0.16);
 }
 
-static void test_the_foot_of_a_heap_thins_out_where_gravity_acts_rarely(void **unused)
+static void test_the_tail_of_a_heap_grows_as_the_plate_stops_less(void **unused)
 {
     (void)unused;
-    /* The reference tells without numbers that l/r grows as p falls at g = 1, and hardly depends on
-     * p at g = 0.2 and 0.5.  Ours does not at g = 1 either (printed), but grows as g falls; two of
-     * the errors of the seeds are asked for. */
-    const struct shape often = shape_of(0.5, 1), rarely = shape_of(0.5, 0.2);
-    CHECK(sample_mean(&rarely.tail) > sample_mean(&often.tail)
-                                      + 2 * hypot(sample_error(&often.tail),
-                                                  sample_error(&rarely.tail)));
-    shape_of(0.2, 1);
-    shape_of(0.05, 1);
-    shape_of(0.1, 0.5);
+    /* The reference tells without numbers that l/r grows as p falls at g = 1: what bounces off the
+     * plate runs along it for 1/p bounces.  Two of the errors of the seeds are asked for, at each
+     * of two steps of p. */
+    static const double loss[3] = {1, 0.2, 0.05};
+    struct shape shape[3];
+    for (int k = 0; k < 3; k++) shape[k] = shape_of(loss[k], 1, SEEDS);
+    for (int k = 1; k < 3; k++) {
+        const struct sample *less = &shape[k - 1].tail, *more = &shape[k].tail;
+        CHECK(sample_mean(more) > sample_mean(less)
+                                  + 2 * hypot(sample_error(less), sample_error(more)));
+    }
+    shape_of(0.05, 0.5, SEEDS);
+    shape_of(0.5, 0.2, SEEDS);
 }
 
 /* --- a million ticks --- */
@@ -347,7 +350,7 @@ int main(void)
         cmocka_unit_test(test_in_a_smooth_pipe_everything_falls_freely),
         cmocka_unit_test(test_waves_need_rough_walls_and_a_window_of_filling),
         cmocka_unit_test(test_a_poured_heap_is_almost_as_steep_as_the_lattice),
-        cmocka_unit_test(test_the_foot_of_a_heap_thins_out_where_gravity_acts_rarely),
+        cmocka_unit_test(test_the_tail_of_a_heap_grows_as_the_plate_stops_less),
         cmocka_unit_test(test_no_grain_is_lost_or_doubled_in_a_million_ticks),
         cmocka_unit_test(test_momentum_is_exact_for_a_million_ticks_where_nothing_takes_it_up),
     };

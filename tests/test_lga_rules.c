@@ -150,6 +150,26 @@ static void test_an_inelastic_gas_cools_and_never_warms(void **unused)
                   (const double[4]){0.7547, 0.4443, 0.1798, 0.0208});
 }
 
+static void test_a_grain_that_bounces_off_the_plate_runs_along_it(void **unused)
+{
+    (void)unused;
+    /* Sand that gravity bends in every tick and that the plate never stops: the grain comes down,
+     * bounces up to the next row and is bent down again, three ticks and one node to the left.
+     * Only where nothing stops it on its first node can a heap have a tail. */
+    enum { COLUMNS = 64, ROWS = 8, BOUNCES = 10, START = 40 };
+    struct lga *lga = gas(COLUMNS, ROWS, (struct lga_rule){.method = LGA_SANDPILE, .gravity = true,
+        .fall = 1, .gain = 1, .loss = 0, .fly = true, .heap = true}, 1);
+    uint8_t kind[COLUMNS * ROWS] = {0};
+    for (uint32_t x = 0; x < COLUMNS; x++) kind[x] = LGA_WALL;
+    gas_set_kinds(lga, kind);
+    lga_node_set(lga, COLUMNS + START, 1u << 2, 0);
+    for (int t = 0; t < 3 * BOUNCES; t++) lga_step(lga);
+    const struct lga_node node = lga_node_get(lga, COLUMNS + START - BOUNCES);
+    assert_int_equal(totals(lga).mass, 1);
+    assert_int_equal(node.moving, 1u << 2);
+    gas_free(lga);
+}
+
 int main(void)
 {
     lga_table_fill(&table);
@@ -162,6 +182,7 @@ int main(void)
         cmocka_unit_test(test_rest_grains_follow_a_geometric_law_in_equilibrium),
         cmocka_unit_test(test_an_elastic_gas_reaches_the_energy_of_equilibrium),
         cmocka_unit_test(test_an_inelastic_gas_cools_and_never_warms),
+        cmocka_unit_test(test_a_grain_that_bounces_off_the_plate_runs_along_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,7 +58,8 @@ KERNEL_TARGET static uint64_t N(stop)(const struct lga_row_stop *row)
     return collisions;
 }
 
-/* Rest grains start down, where no other lies, and one of a node's movers bends down. */
+/* Rest grains start down, where no other lies, and one of a node's movers bends down; neither into
+ * a wall. */
 KERNEL_TARGET static void N(fall_row)(const struct lga_row_fall *row)
 {
     const uint32_t words = row->words;
@@ -87,18 +88,18 @@ KERNEL_TARGET static void N(fall_row)(const struct lga_row_fall *row)
                 r &= fluid;
             }
             const vec starts = r & falls[p];
-            const vec shut_left = N(load)(row->wall_left + w) | N(load)(row->taken_left + w);
-            const vec shut_right = N(load)(row->wall_right + w) | N(load)(row->taken_right + w);
+            const vec wall[2] = {N(load)(row->wall_left + w), N(load)(row->wall_right + w)};
+            const vec shut_left = wall[0] | N(load)(row->taken_left + w);
+            const vec shut_right = wall[1] | N(load)(row->taken_right + w);
             const vec goes_left = starts & left[p] & ~m[4] & ~shut_left;
             const vec goes_right = starts & ~left[p] & ~m[5] & ~shut_right;
             m[4] |= goes_left;
             m[5] |= goes_right;
             if (row->fly) {
                 const struct N(pick) dice = {third[p], fifth[p], coin[p], second[p]};
-                const vec at_rest[2] = {N(load)(row->rest_left + w), N(load)(row->rest_right + w)};
                 vec count[3] = {{0}}, from[6], full[6] = {{0}};
-                full[4] = at_rest[0];
-                full[5] = at_rest[1];
+                full[4] = wall[0] | N(load)(row->rest_left + w);
+                full[5] = wall[1] | N(load)(row->rest_right + w);
                 for (int d = 0; d < 6; d++) N(add_bit)(count, m[d]);
                 N(choose)(m, count, dice, from);
                 for (int d = 0; d < 6; d++) from[d] &= bend[p];

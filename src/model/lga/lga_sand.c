@@ -84,7 +84,9 @@ static void fall_sand(struct lga *lga, uint32_t site)
     lga->moving[site] |= (uint8_t)bit(d);
 }
 
-/* Sandpile: one of the movers bends down, unless a rest grain is in the way. */
+/* Sandpile: one of the movers bends down, unless a rest grain or a wall is in the way.  (Bent into
+ * the plate at once, a grain that bounced off it would never leave its node, and a heap would have
+ * no tail.) */
 static void bend_sand(struct lga *lga, uint32_t site)
 {
     const unsigned moving = lga->moving[site];
@@ -93,6 +95,7 @@ static void bend_sand(struct lga *lga, uint32_t site)
     const int from = lga_plain_mover(lga, site);
     const int to = down[from] < 0 ? downward(lga, LGA_DIE_BEND_SIDE, site) : down[from];
     const uint32_t below = lga->beside[site][to];
+    if (lga->kind[below] == LGA_WALL) return;
     if (lga->kind[below] == LGA_FLUID && lga->load[below] & LOAD_RESTS) return;
     if (moving & bit(to)) return;
     lga->moving[site] = (uint8_t)((moving & ~bit(from)) | bit(to));
