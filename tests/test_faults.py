@@ -155,7 +155,8 @@ class Faults(unittest.TestCase):
 
     def every_allocation(self, name, words, quiet=tuple(QUIET), stride=STRIDE):
         count, whole = self.path("count"), "straight-" + name
-        settings = {"LD_PRELOAD": SHIM, "SHIM_COUNT": count}
+        # An ffmpeg that keeps what it gets: the real one costs more than all the rest.
+        settings = {"LD_PRELOAD": SHIM, "SHIM_COUNT": count, **self.fake_ffmpeg(self.KEEPING)}
         self.clean(whole, name)
         straight = self.call(*words, "-o", whole, *quiet, **settings)
         self.assertEqual(straight.returncode, 0, straight.stderr)
@@ -214,11 +215,10 @@ back 0.02
 
     def test_every_allocation_of_films_sessions_studies_and_figures_may_fail(self):
         with open(self.path("session.txt"), "w", encoding="ascii") as out:
-            out.write(self.SESSION if shutil.which("ffmpeg") else self.SESSION.replace("movie", "#"))
-        if shutil.which("ffmpeg"):
-            self.every_allocation("poor.gif", ["movie", "kept"])
-            self.every_allocation("poor.gif", ["movie", rundir.DISCS_FILE, "--until", "0.1",
-                                               "--model", "md,ed", "--side-by-side"])
+            out.write(self.SESSION)
+        self.every_allocation("poor.gif", ["movie", "kept"])
+        self.every_allocation("poor.gif", ["movie", rundir.DISCS_FILE, "--until", "0.1", "--model",
+                                           "md,ed", "--side-by-side"])
         self.every_allocation("poor-live", ["live", rundir.DISCS_FILE, "--commands", "session.txt",
                                             "-s", "output.frames=0.01", "-s", "output.log=0.01"],
                               stride=STRIDE if STRIDE == 1 else 6 * STRIDE)
@@ -248,6 +248,8 @@ back 0.02
         done = self.call("run", rundir.DISCS_FILE, "-o", "bare", *SHORT, "-s", "output.frames=0", "-s",
                          "output.maps=0", LD_PRELOAD=SHIM, SHIM_NO_LIBRARY="lib")
         self.assertEqual(done.returncode, 0, done.stderr)
+
+    KEEPING = "for a; do last=${a#file:}; done\nexec cat > \"$last\"\n"
 
     def fake_ffmpeg(self, script):
         folder = self.path("programs")

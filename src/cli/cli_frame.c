@@ -84,9 +84,10 @@ static bool draw(const struct options *options, const struct setup *setup, const
     struct comparison comparison = {0};
     struct view view = setup->scene->view;
     /* A single picture is coloured by itself, unless the run it belongs to has a range. */
-    recall_range(path, setup->scene, &view);
+    const bool recalled = recall_range(path, setup->scene, &view, error);
     view.range_from = RANGE_FRAME;
-    const bool done = (options_given(options, OPTION_force) || file_absent(output, error))
+    const bool done = recalled
+        && (options_given(options, OPTION_force) || file_absent(output, error))
         && open_comparison(&comparison, options, output, error)
         && film_open(&film, setup->scene, setup->model, &view, error)
         && footage_go(footage, t, error)

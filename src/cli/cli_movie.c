@@ -45,15 +45,16 @@ static bool choose(struct cast *cast, const struct options *options, struct erro
 }
 
 /* A run that kept its grains also kept the seconds that its model took. */
-static void tell_run_cost(const char *run, char *text, size_t size)
+static bool tell_run_cost(const char *run, char *text, size_t size, struct error *error)
 {
-    struct error ignored;
-    json_t *manifest = recall_manifest(run, &ignored);
+    json_t *manifest = recall_manifest(run, error);
+    if (!manifest) return false;
     const json_t *seconds = json_object_get(manifest, "seconds");
     const json_t *wall = json_object_get(json_object_get(seconds, "core"), "wall");
     text[0] = 0;
     if (wall) snprintf(text, size, "computed in %.3g s", json_number_value(wall));
     json_decref(manifest);
+    return true;
 }
 
 static bool open_panel(struct cast *cast, uint32_t p, const struct options *options,
@@ -71,8 +72,8 @@ static bool open_panel(struct cast *cast, uint32_t p, const struct options *opti
         snprintf(view.label + used, sizeof view.label - used, "%s{model}", used ? "   " : "");
     }
     if (cast->count > 1 && !view.caption[0]) {
-        if (redraws) tell_run_cost(path, view.caption, sizeof view.caption);
-        else snprintf(view.caption, sizeof view.caption, "computed in {wall} s");
+        snprintf(view.caption, sizeof view.caption, "computed in {wall} s");
+        if (redraws && !tell_run_cost(path, view.caption, sizeof view.caption, error)) return false;
     }
     panel->setup = setup;
     return footage_open(&panel->footage, setup, path, film_needs_contacts(&view), error)

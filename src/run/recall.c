@@ -5,6 +5,7 @@
 #include "run/recall.h"
 
 #include "run/folder.h"
+#include "run/jsontext.h"
 #include "run/setup.h"
 
 #include <math.h>
@@ -20,8 +21,12 @@ json_t *recall_manifest(const char *run, struct error *error)
     json_error_t cause;
     json_t *root = json_loadb(text, size, 0, &cause);
     free(text);
-    if (!root && !*cause.text) error_set(error, "%s: not enough memory to read it", path);
-    else if (!root) error_set(error, "%s:%d: not a manifest: %s", path, cause.line, cause.text);
+    /* What finds no memory looks to jansson like a mistake in the text. */
+    if (!root && (!*cause.text || jsontext_failed())) {
+        error_set(error, "%s: not enough memory to read it", path);
+    } else if (!root) {
+        error_set(error, "%s:%d: not a manifest: %s", path, cause.line, cause.text);
+    }
     return root;
 }
 
@@ -31,20 +36,23 @@ bool recall_says_done(const json_t *manifest)
     return status && strcmp(status, "done") == 0;
 }
 
-bool recall_done(const char *run)
+bool recall_done(const char *run, bool *done, struct error *error)
 {
-    struct error ignored;
-    json_t *root = recall_manifest(run, &ignored);
-    const bool done = recall_says_done(root);
+    char path[FILE_PATH_MAX];
+    *done = false;
+    if (!file_exists(folder_path(path, run, "manifest.json"))) return true;
+    json_t *root = recall_manifest(run, error);
+    *done = recall_says_done(root);
     json_decref(root);
-    return done;
+    return root != NULL;
 }
 
-void recall_range(const char *run, const struct scene *scene, struct view *view)
+bool recall_range(const char *run, const struct scene *scene, struct view *view,
+                  struct error *error)
 {
-    if (!setup_is_run(run) || !isnan(view->range[0])) return;
-    struct error ignored;
-    json_t *root = recall_manifest(run, &ignored);
+    if (!setup_is_run(run) || !isnan(view->range[0])) return true;
+    json_t *root = recall_manifest(run, error);
+    if (!root) return false;
     const json_t *range = json_object_get(root, "range"), *color = json_object_get(root, "color");
     const json_t *low = json_array_get(range, 0), *high = json_array_get(range, 1);
     if (json_is_number(low) && json_is_number(high) && scene->view.range_from == RANGE_RUN
@@ -53,4 +61,5 @@ void recall_range(const char *run, const struct scene *scene, struct view *view)
         view->range[1] = json_number_value(high);
     }
     json_decref(root);
+    return true;
 }

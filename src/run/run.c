@@ -417,8 +417,8 @@ static bool claim(struct run *run)
     if (!request->resume) return folder_claim(run->directory, request->force, run->error);
     if (!folder_reclaim(run->directory, run->error)) return false;
     char path[FILE_PATH_MAX];
-    run->resumes = checkpoint_exists(folder_path(path, run->directory, "checkpoint"))
-                || recall_done(run->directory);
+    run->resumes = checkpoint_exists(folder_path(path, run->directory, "checkpoint"));
+    if (!run->resumes && !recall_done(run->directory, &run->resumes, run->error)) return false;
     if (!run->resumes && request->warn) {
         request->warn(request->context, "this run ended before its first checkpoint; it begins "
                                         "anew");

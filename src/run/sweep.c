@@ -95,7 +95,10 @@ static bool choose_points(struct sweep *sweep, struct error *error)
     if (!sweep->due) return error_set(error, "not enough memory for a study");
     for (uint32_t point = request->shard; point < sweep->count; point += request->shards) {
         char path[FILE_PATH_MAX];
-        if (!request->force && recall_done(results_point(path, request->directory, point))) {
+        bool ended = false;
+        struct error ignored;           /* the run itself will tell */
+        results_point(path, request->directory, point);
+        if (!request->force && recall_done(path, &ended, &ignored) && ended) {
             sweep->status.done++;
         } else {
             sweep->due[sweep->due_count++] = point;

@@ -100,7 +100,9 @@ static bool open_pictures(struct writer *writer, bool resume, struct error *erro
     folder_path(path, writer->directory, "dump/index.csv");
     /* A finished run that is made longer has its colours already; without its grains they cannot
      * be found anew, so the new frames take them over. */
-    if (resume && !file_exists(path)) recall_range(writer->directory, scene, &view);
+    if (resume && !file_exists(path) && !recall_range(writer->directory, scene, &view, error)) {
+        return false;
+    }
     if (!film_open(&writer->film, scene, writer->sim->model, &view, error)) return false;
     /* What is not listed is not kept either, so then each frame is coloured by itself. */
     writer->draws_later = film_needs_gathering(&writer->film) && !look_samples(writer->sim);
