@@ -2,6 +2,7 @@
 #include "bench/cost_cache.h"
 
 #include "base/archive.h"
+#include "base/text.h"
 #include "model/model.h"
 #include "run/build.h"
 #include "run/folder.h"
@@ -38,12 +39,13 @@ static bool left_out_key(const char *line)
 
 static uint64_t scene_hash(const struct scene *scene)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return 0;
-    scene_write_text(scene, out);
-    fclose(out);
+    struct text words;
+    const bool told = text_begin(&words) && scene_write_text(scene, words.stream);
+    char *text = text_end(&words, NULL);
+    if (!told || !text) {
+        free(text);
+        return 0;
+    }
     uint64_t hash = ARCHIVE_HASH_START;
     bool skips = false;
     for (const char *line = text; line && *line;) {

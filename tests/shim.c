@@ -9,8 +9,8 @@
  *
  * What the program starts (ffmpeg, gnuplot, the runs of a sweep) is left alone.
  *
- * Only calls from the program's own code count: what happens when Mesa or libconfig run out of
- * memory is not ours to decide.
+ * Only calls from the program's own code count, through which jansson takes its memory, too: what
+ * happens when Mesa or libconfig run out of memory is not ours to decide.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */

@@ -193,6 +193,22 @@ static struct scenes_run *squeeze(double ends)
     return scenes_begin(text, "ed");
 }
 
+static void test_a_blow_that_runs_through_a_thousand_discs_is_no_end_of_time(void **unused)
+{
+    (void)unused;
+    /* A column that touches is let go: blows run up and down it at one and the same moment, at most
+     * N (N - 1) / 2 of them, and then time goes on. */
+    struct scenes_run *run = scenes_begin("until = 2.0; box = [0.0, 0.0, 1.0, 1000.0];"
+        "top = \"open\"; gravity = (0.0, -1.0); grains = ({ radius = 0.5; restitution = 0.2; });"
+        "placements = ({ kind = \"square\"; region = [0.0, 0.0, 1.0, 1000.0]; count = 1000; });"
+        "ed = { t_c = 0.03; };", "ed");
+    scenes_advance(run, 1e-3);
+    const struct counters c = simulation_count(&run->sim);
+    CHECK(c.time >= 1e-3);
+    CHECK(c.steps > 120000);            /* or it was no such blow */
+    scenes_end(run);
+}
+
 static void test_a_wall_that_leaves_no_room_stops_the_clock_and_is_named(void **unused)
 {
     (void)unused;
@@ -202,7 +218,7 @@ static void test_a_wall_that_leaves_no_room_stops_the_clock_and_is_named(void **
     CHECK(simulation_advance(&run->sim, 100, 20000000, &error) == ADVANCE_BROKEN);
     CHECK(strstr(error.text, "time stopped at") && strstr(error.text, "no room left"));
     CHECK(strstr(error.text, "walls.moves"));
-    /* Two million events for 1e-3 of time are due where the room left is some 1e-5. */
+    /* 1e5 events that bring time on by next to nothing are due where the room left is some 1e-5. */
     CHECK_NEAR(simulation_count(&run->sim).time, 7, 1e-4);
     scenes_end(run);
 }
@@ -231,6 +247,7 @@ int main(void)
         cmocka_unit_test(test_many_events_at_one_time_are_all_carried_out),
         cmocka_unit_test(test_a_late_clock_moves_no_grain_otherwise),
         cmocka_unit_test(test_a_clock_that_stands_still_is_noticed_and_named),
+        cmocka_unit_test(test_a_blow_that_runs_through_a_thousand_discs_is_no_end_of_time),
         cmocka_unit_test(test_a_wall_that_leaves_no_room_stops_the_clock_and_is_named),
         cmocka_unit_test(test_a_wall_that_leaves_a_thousandth_of_room_stops_nothing),
     };

@@ -123,13 +123,26 @@ class Faults(unittest.TestCase):
     def test_what_is_there_already_is_kept_unless_force_is_given(self):
         self.call("frame", "kept", "-o", "mine.png", *QUIET)
         for words in (["frame", "kept", "-o", "mine.png"], ["movie", "kept", "-o", "mine.gif"],
-                      ["map", "kept", "-o", "mymaps"]):
+                      ["map", "kept", "-o", "mymaps"], ["export", "kept", "-o", "mycsv"],
+                      ["plot", "kept", "--of", "energy", "-o", "myplots"],
+                      ["figure", "cooperative-11", "--quick", "-o", "myfigures"]):
             first = self.call(*words)
             if words[0] == "movie" and not shutil.which("ffmpeg"):
                 continue
             self.assertIn(first.returncode, (0, 2), first.stderr)
             self.assert_told(self.call(*words), 2, "--force", words[-1])
             self.assertEqual(self.call(*words, "--force").returncode, 0)
+
+    def test_a_table_that_no_study_left_is_not_overwritten_by_one(self):
+        os.mkdir(self.path("mine"))
+        with open(self.path("mine", "results.csv"), "w", encoding="ascii") as out:
+            out.write("precious\n")
+        study = ["sweep", rundir.DISCS_FILE, "--vary", "grains.restitution=0.5,0.6", "--until",
+                 "0.01", "-o", "mine"]
+        self.assert_told(self.call(*study), 2, "--force", "results.csv")
+        with open(self.path("mine", "results.csv"), encoding="ascii") as file:
+            self.assertEqual(file.read(), "precious\n")
+        self.assertEqual(self.call(*study, "--force").returncode, 0)
 
     # Memory
 
@@ -169,8 +182,8 @@ class Faults(unittest.TestCase):
                                            "output.dump=true", "-s", "output.contacts=true"])
         self.every_allocation("poor", ["run", "obstacle", "--quick", "--model", "dsmc", "--until",
                                        "0.003", "--size", "160x120", "-s", "output.maps=0.001"])
-        self.every_allocation("poor", ["run", "pile", "--quick", "--model", "lga", "--size",
-                                       "160x120"])
+        self.every_allocation("poor", ["run", "pile", "--quick", "--model", "lga", "--until", "1000",
+                                       "--size", "160x120", "-s", "output.checkpoint=400"])
 
     def test_every_allocation_of_the_other_commands_may_fail(self):
         self.every_allocation("poor.png", ["frame", "kept", "--forces", "--arrows", "--map",
@@ -182,7 +195,7 @@ class Faults(unittest.TestCase):
     SESSION = """pause
 step 3
 set gravity (2, -9)
-go until 0.1
+go until 0.02
 push 8 6 1 2 2
 map density
 color spin
@@ -193,10 +206,10 @@ checkpoint kept
 movie film.gif start
 pour 2
 tilt 10
-go until 0.2
+go until 0.04
 movie film.gif stop
 expect grains > 10
-back 0.1
+back 0.02
 """
 
     def test_every_allocation_of_films_sessions_studies_and_figures_may_fail(self):
@@ -206,7 +219,8 @@ back 0.1
             self.every_allocation("poor.gif", ["movie", "kept"])
             self.every_allocation("poor.gif", ["movie", rundir.DISCS_FILE, "--until", "0.1",
                                                "--model", "md,ed", "--side-by-side"])
-        self.every_allocation("poor-live", ["live", rundir.DISCS_FILE, "--commands", "session.txt"],
+        self.every_allocation("poor-live", ["live", rundir.DISCS_FILE, "--commands", "session.txt",
+                                            "-s", "output.frames=0.01", "-s", "output.log=0.01"],
                               stride=STRIDE if STRIDE == 1 else 6 * STRIDE)
         self.every_allocation("poor-study", ["sweep", rundir.DISCS_FILE, "--vary",
                                              "grains.restitution=0.5,0.6", "--until", "0.1"])
@@ -223,6 +237,9 @@ back 0.1
                                    SHIM_NO_LIBRARY="lib"), 1, "libosmesa6", "libegl1")
         self.assert_told(self.call("frame", "kept", "-o", "no.png", SANDREEL_FONT="/nowhere.ttf"), 1,
                          "/nowhere.ttf", "SANDREEL_FONT")
+        os.mkfifo(self.path("pipe.ttf"))
+        self.assert_told(self.call("frame", "kept", "-o", "no.png",
+                                   SANDREEL_FONT=self.path("pipe.ttf")), 1, "pipe.ttf")
         self.assert_told(self.call("frame", "kept", "-o", "no.png", SANDREEL_GL="vulkan"), 2,
                          "osmesa or egl")
         self.assertEqual(glob.glob(self.path("no.*")), [])

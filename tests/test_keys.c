@@ -1,5 +1,6 @@
 /* test_keys.c - every numeric key of every group at 0, -1, the smallest and the largest number,
- * nan and inf: refused with a finding, or a run that begins and stays finite or says why not.
+ * nan and inf: refused with a finding, or a run that begins and stays finite or says why not; and
+ * in the scene itself as on the command line.
  *
  * Walks the key tables, so a key that is added tomorrow is tried too.  Grains of md, ed, dsmc and
  * lga are advanced by a few hundred units of work after each accepted value.
@@ -35,7 +36,7 @@ enum { RICH = sizeof rich / sizeof *rich };
 
 static char text[2000];
 static char variant[100];       /* a word of the model's settings, as an override; "" for none */
-static unsigned tried, refused, ran, sections_tried[SCENE_SECTIONS];
+static unsigned tried, refused, ran, tried_in_scene, sections_tried[SCENE_SECTIONS];
 
 static bool is_numeric(enum key_type type)
 {
@@ -81,10 +82,64 @@ static void run_briefly(const struct setup *setup, const char *override)
     simulation_destroy(&sim);
 }
 
-static void try_value(const char *model, const char *path, const struct key *key,
-                      const char *value)
+/* ---- in the scene itself ------------------------------------------------------------------- */
+
+/* `text` with KEY = VALUE; in this group (in the first entry, if it is a list), in place of what it
+ * says of that key. */
+static void write_scene(char *out, size_t size, const struct key_group *group, bool list,
+                        const char *key, const char *value)
 {
-    char override[400], words[200], model_words[60];
+    char head[100], wanted[100];
+    const char *at = text;
+    snprintf(wanted, sizeof wanted, "%s = ", key);
+    if (group->name[0]) {
+        snprintf(head, sizeof head, list ? "%s = ( { " : "%s = { ", group->name);
+        at = strstr(text, head);
+        if (!at) {
+            snprintf(out, size, "%s%s%s%s; }%s;\n", text, head, wanted, value, list ? " )" : "");
+            return;
+        }
+        at += strlen(head);
+    }
+    /* Of the top group every key stands before the first list, of another before its bracket. */
+    const size_t room = strcspn(at, "}");
+    const char *old = strstr(at, wanted), *rest = at;
+    const bool said = old && old < at + room && (old == at || old[-1] == ' ' || old[-1] == '\n');
+    if (said) rest = old + strcspn(old, ";") + 1;
+    snprintf(out, size, "%.*s%s%s; %s", (int)((said ? old : at) - text), text, wanted, value, rest);
+}
+
+/* Is it refused as the override is?  What is no number is none in a file either. */
+static void try_in_scene(const struct key_group *group, bool list, const struct key *key,
+                         const char *words, const char *model_words, bool accepted)
+{
+    char scene[2400];
+    write_scene(scene, sizeof scene, group, list, key->name, words);
+    const char *const overrides[] = {model_words, variant};
+    const struct setup_request request = {.path = "keys.cfg", .text = scene, .overrides = overrides,
+                                          .override_count = *variant ? 2 : 1, .place = true};
+    struct setup setup;
+    struct error error = {.text = ""};
+    const bool loaded = setup_load(&setup, &request, &error);
+    if (loaded != accepted) {
+        const struct findings *found = setup.findings;
+        fail_msg("%s.%s = %s: %s in a scene, and %s by -s: %s", group->name, key->name, words,
+                 loaded ? "right" : "refused", accepted ? "right" : "refused",
+                 found && found->count ? found->list[0].text : error.text);
+    }
+    setup_free(&setup);
+    tried_in_scene++;
+}
+
+static void try_value(const char *model, const struct key_group *group, bool list,
+                      const struct key *key, const char *value)
+{
+    char path[200], override[500], words[200], model_words[60];
+    if (group->name[0]) {
+        snprintf(path, sizeof path, "%s.%s%s", group->name, list ? "[0]." : "", key->name);
+    } else {
+        snprintf(path, sizeof path, "%s", key->name);
+    }
     write_value(words, sizeof words, key->type, value);
     snprintf(override, sizeof override, "%s=%s", path, words);
     snprintf(model_words, sizeof model_words, "model=\"%s\"", model);
@@ -94,25 +149,24 @@ static void try_value(const char *model, const char *path, const struct key *key
     struct setup setup;
     struct error error = {.text = ""};
     tried++;
-    if (setup_load(&setup, &request, &error)) {
+    const bool accepted = setup_load(&setup, &request, &error);
+    if (accepted) {
         run_briefly(&setup, override);
     } else {
         refused++;
         if (setup.findings && setup.findings->errors == 0) fail_msg("%s: no finding", override);
     }
     setup_free(&setup);
+    try_in_scene(group, list, key, words, model_words, accepted);
 }
 
 static void try_group(const char *model, const struct key_group *group, bool list)
 {
     for (uint32_t k = 0; k < group->count; k++) {
-        const struct key *key = &group->keys[k];
-        char path[200];
-        if (!is_numeric(key->type)) continue;
-        if (group->name[0]) snprintf(path, sizeof path, "%s.%s%s", group->name, list ? "[0]." : "",
-                                     key->name);
-        else snprintf(path, sizeof path, "%s", key->name);
-        for (int v = 0; v < VALUES; v++) try_value(model, path, key, values[v]);
+        if (!is_numeric(group->keys[k].type)) continue;
+        for (int v = 0; v < VALUES; v++) {
+            try_value(model, group, list, &group->keys[k], values[v]);
+        }
     }
 }
 
@@ -177,6 +231,7 @@ static void test_every_number_of_a_scene_is_refused_or_runs(void **unused)
         if ((*m)->settings) try_settings(*m);
     }
     print_message("%u values tried, %u refused, %u ran\n", tried, refused, ran);
+    CHECK(tried_in_scene == tried);
     CHECK(refused > 0 && ran > 0);
     for (uint32_t s = 0; s < SCENE_SECTIONS; s++) {
         if (sections_tried[s] > 0) continue;

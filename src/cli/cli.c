@@ -29,10 +29,10 @@ static const uint8_t map_options[] = {OPTION_output, OPTION_force, OPTION_field,
 static const uint8_t export_options[] = {OPTION_to, OPTION_output, OPTION_force, OPTION_frame,
     OPTION_time, OPTION_field, OPTION_cell, OPTION_kernel, OPTION_width, OPTION_set, OPTION_help,
     OPTION_COUNT};
-static const uint8_t figure_options[] = {OPTION_small, OPTION_output, OPTION_plot_as, OPTION_json,
-    ALWAYS};
-static const uint8_t plot_options[] = {OPTION_of, OPTION_output, OPTION_plot_as, OPTION_time,
-    SIMULATING, ALWAYS};
+static const uint8_t figure_options[] = {OPTION_small, OPTION_output, OPTION_force, OPTION_plot_as,
+    OPTION_json, ALWAYS};
+static const uint8_t plot_options[] = {OPTION_of, OPTION_output, OPTION_force, OPTION_plot_as,
+    OPTION_time, SIMULATING, ALWAYS};
 static const uint8_t check_options[] = {OPTION_explain, SIMULATING, OPTION_help, OPTION_COUNT};
 static const uint8_t scenes_options[] = {OPTION_json, OPTION_help, OPTION_COUNT};
 static const uint8_t info_options[] = {OPTION_frame, OPTION_time, OPTION_grain, OPTION_at,

@@ -4,6 +4,7 @@
  */
 #include "cli/cli.h"
 #include "cli/opening.h"
+#include "run/jsontext.h"
 #include "base/file.h"
 #include "bench/bench.h"
 #include "bench/effects.h"
@@ -113,7 +114,7 @@ static bool measure_all(const struct options *options, const json_t *old, json_t
 static bool write_json(const struct options *options, const json_t *root, struct error *error)
 {
     const char *output = options->values[OPTION_output];
-    char *text = json_dumps(root, JSON_INDENT(4) | JSON_REAL_PRECISION(9));
+    char *text = jsontext_dump(root, JSON_INDENT(4) | JSON_REAL_PRECISION(9));
     if (!text) return error_set(error, "not enough memory");
     bool done = true;
     if (options_given(options, OPTION_json)) printf("%s\n", text);

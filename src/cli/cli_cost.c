@@ -11,6 +11,7 @@
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "run/folder.h"
+#include "run/jsontext.h"
 #include "run/plot.h"
 
 #include <jansson.h>
@@ -291,7 +292,7 @@ static bool save(const struct cost_table *table, const char *directory, const ch
     char path[FILE_PATH_MAX];
     struct error ignored;
     json_t *root = describe(table);
-    char *text = json_dumps(root, JSON_INDENT(4) | JSON_REAL_PRECISION(9));
+    char *text = jsontext_dump(root, JSON_INDENT(4) | JSON_REAL_PRECISION(9));
     json_decref(root);
     if (!text) return error_set(error, "not enough memory");
     const bool done = file_make_directory(directory, error)

@@ -5,8 +5,10 @@
 #include "cli/cli.h"
 #include "cli/opening.h"
 #include "figure/page.h"
+#include "run/folder.h"
 #include "run/plot.h"
 
+#include <dirent.h>
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -123,6 +125,31 @@ static bool make_all(struct studio *studio, struct progress *progress, struct er
     return true;
 }
 
+/* Is it a file of this figure?  They are called NAME.png, NAME-suffix.csv and the like. */
+static bool belongs_to(const char *file, const struct figure *figure)
+{
+    const size_t length = strlen(figure->name);
+    return strncmp(file, figure->name, length) == 0 && file[length] && strchr(".-", file[length]);
+}
+
+/* What would be overwritten is seen before hours are spent. */
+static bool are_absent(const struct studio *studio, struct error *error)
+{
+    DIR *list = options_given(studio->options, OPTION_force) ? NULL : opendir(studio->directory);
+    bool done = true;
+    for (struct dirent *entry; done && list && (entry = readdir(list));) {
+        bool found = studio->count > 1 && strcmp(entry->d_name, "index.html") == 0;
+        for (uint32_t k = 0; k < studio->count; k++) {
+            found = found || belongs_to(entry->d_name, studio->chosen[k]);
+        }
+        char path[FILE_PATH_MAX];
+        folder_path(path, studio->directory, "%s", entry->d_name);
+        if (found) done = file_absent(path, error);
+    }
+    if (list) closedir(list);
+    return done;
+}
+
 /* Failures weigh more than verdicts. */
 static int code_of(const struct studio *studio)
 {
@@ -169,6 +196,7 @@ int cli_figure(const struct options *options)
     studio->directory = output ? output : "figures";
     const bool done = opening_threads(options, &error) > 0
         && choose(options, studio->chosen, &studio->count, &error)
+        && are_absent(studio, &error)
         && plot_parse(as ? as : "png,svg", &studio->formats, &error)
         && progress_begin(&progress, options->values[OPTION_progress], &error);
     int code = EXIT_DONE;

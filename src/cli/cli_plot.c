@@ -62,15 +62,31 @@ static void tell(const char *directory, const char *stem, unsigned formats, bool
     }
 }
 
+/* Where plot `gauge` of this run goes. */
+static const char *place_of(const struct options *options, const struct gauge *gauge,
+                            const char *run, char stem[80])
+{
+    const char *output = options->values[OPTION_output];
+    snprintf(stem, 80, "plot-%s", gauge->name);
+    return output ? output : setup_is_run(run) ? run : ".";
+}
+
+static bool is_absent(const struct options *options, const struct gauge *gauge, const char *run,
+                      struct error *error)
+{
+    char stem[80], path[FILE_PATH_MAX];
+    const char *directory = place_of(options, gauge, run, stem);
+    return options_given(options, OPTION_force)
+        || file_absent(folder_path(path, directory, "%s.csv", stem), error);
+}
+
 static bool plot(const struct options *options, const struct gauge *gauge, unsigned formats,
                  struct gauge_job *job, struct error *error)
 {
     struct chart chart;
     bool drawn = false;
-    const char *output = options->values[OPTION_output];
-    const char *directory = output ? output : setup_is_run(job->run) ? job->run : ".";
     char stem[80];
-    snprintf(stem, sizeof stem, "plot-%s", gauge->name);
+    const char *directory = place_of(options, gauge, job->run, stem);
     const bool done = gauge_draw(gauge, job, &chart, error)
         && plot_save(&chart, directory, stem, formats, &drawn, error);
     chart_free(&chart);
@@ -91,6 +107,7 @@ int cli_plot(const struct options *options)
     const char *path = options->operands[0], *as = options->values[OPTION_plot_as];
     struct gauge_job job = {.run = path, .setup = &setup, .footage = &footage};
     bool done = choose(options->values[OPTION_of], &gauge, &error)
+        && is_absent(options, gauge, path, &error)
         && opening_threads(options, &error) > 0
         && plot_parse(as ? as : "png", &formats, &error)
         && options_real(options, OPTION_time, NAN, &job.time, &error)

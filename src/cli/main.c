@@ -4,6 +4,7 @@
  */
 #include "cli/cli.h"
 #include "cli/opening.h"
+#include "run/jsontext.h"
 
 #include <poll.h>
 #include <signal.h>
@@ -53,6 +54,10 @@ static bool output_is_unwanted(void)
  * that of every program whose reader left, without a word: by SIGPIPE, which shells call 141. */
 static int end(int code)
 {
+    if (code == EXIT_DONE && jsontext_failed()) {
+        fprintf(stderr, "sandreel: not enough memory for all that was to be told\n");
+        code = EXIT_FAILED;
+    }
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;
     if (output_is_unwanted()) {
         if (code) return code;
@@ -66,6 +71,7 @@ static int end(int code)
 int main(int count, char **arguments)
 {
     let_waiting_threads_sleep(arguments);
+    jsontext_guard();
     signal(SIGPIPE, SIG_IGN);           /* a reader that ends early ends no run */
     signal(SIGXFSZ, SIG_IGN);           /* and so is a file that grows too large */
     const char *word = count > 1 ? arguments[1] : "help";

@@ -4,6 +4,7 @@
  */
 #include "cli/options.h"
 
+#include "base/text.h"
 #include "scene/key.h"
 
 #include <assert.h>
@@ -97,10 +98,9 @@ static void write_text(FILE *out, const char *text, size_t length)
 /* "KEY=VALUE" for an option that sets a key; malloc'ed, NULL without memory. */
 static char *make_override(const struct option_row *row, const char *value)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return NULL;
+    struct text text;
+    if (!text_begin(&text)) return text_end(&text, NULL);
+    FILE *out = text.stream;
     fprintf(out, "%s=", row->key);
     switch (row->form) {
     case FORM_PLAIN: fputs(value, out); break;
@@ -125,7 +125,7 @@ static char *make_override(const struct option_row *row, const char *value)
         fputc(']', out);
         break;
     }
-    return fclose(out) == 0 ? text : NULL;
+    return text_end(&text, NULL);
 }
 
 static bool add_override(struct options *options, const char *text, struct error *error)

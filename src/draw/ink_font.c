@@ -15,6 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <ft2build.h>
@@ -59,8 +60,11 @@ static bool find_font(const char **path, struct error *error)
 {
     const char *chosen = getenv("SANDREEL_FONT");
     if (chosen && *chosen) {
+        struct stat status;     /* FreeType would wait for a pipe */
         *path = chosen;
-        if (access(chosen, R_OK) == 0) return true;
+        if (access(chosen, R_OK) == 0 && stat(chosen, &status) == 0 && S_ISREG(status.st_mode)) {
+            return true;
+        }
         return error_set(error, "SANDREEL_FONT names %s, which cannot be read; name a TrueType "
                          "font file or unset it", chosen);
     }

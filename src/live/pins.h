@@ -11,8 +11,10 @@
 
 #include "live/timeline.h"
 
-/* Would models compute the start of `fresh` with other settings than that of `base`? */
-bool pins_needed(const struct scene *base, const struct scene *fresh);
+/* *needed: would models compute the start of `fresh` with other settings than that of `base`?
+ * False if memory is short. */
+bool pins_needed(const struct scene *base, const struct scene *fresh, bool *needed,
+                 struct error *error);
 
 /* Lays the settings of `base` over the timeline's scene. */
 bool pins_put(struct timeline *timeline, const struct scene *base, struct error *error);

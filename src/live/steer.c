@@ -71,7 +71,12 @@ static bool try_phase(struct session *session, struct timeline *copy,
     const struct scene *base = session->base.scene;
     struct setup setup;
     if (!timeline_setup(copy, base, NULL, &setup, error)) return false;
-    if (pins_needed(base, setup.scene)) {
+    bool pinned;
+    if (!pins_needed(base, setup.scene, &pinned, error)) {
+        setup_free(&setup);
+        return false;
+    }
+    if (pinned) {
         setup_free(&setup);
         if (!pins_put(copy, base, error) || !timeline_setup(copy, base, NULL, &setup, error)) {
             return false;

@@ -6,6 +6,7 @@
 
 #include "live/expression.h"
 #include "live/sight.h"
+#include "run/jsontext.h"
 #include "run/look.h"
 #include "run/portrait.h"
 #include "scene/scene_value.h"
@@ -62,7 +63,8 @@ bool teller_get(struct session *session, const struct command_line *line, struct
         return error_set_code(error, EXIT_USAGE, "there is no key or total '%.60s'; `sandreel help "
             "keys` lists the keys; totals are time, grains, kinetic_energy, ...", line->word);
     }
-    char *text = scene_write_value(key, at);
+    char *text;
+    if (!scene_write_value(key, at, &text)) return error_set(error, "not enough memory to tell it");
     session_say(session, "%s", text ? text : "(chosen when absent, or never)");
     free(text);
     return true;
@@ -86,10 +88,11 @@ bool teller_inspect(struct session *session, const struct command_line *line,
         return error_set_code(error, EXIT_USAGE, "there is no grain now");
     }
     json_t *portrait = portrait_grain(grains, i);
-    char *text = json_dumps(portrait, JSON_REAL_PRECISION(9));
-    session_say(session, "%s", text ? text : "{}");
-    free(text);
+    char *text = jsontext_dump(portrait, JSON_REAL_PRECISION(9));
     json_decref(portrait);
+    if (!text) return error_set(error, "not enough memory to tell of a grain");
+    session_say(session, "%s", text);
+    free(text);
     return true;
 }
 

@@ -5,6 +5,7 @@
 #include "live/timeline.h"
 
 #include "base/asset.h"
+#include "base/text.h"
 #include "run/folder.h"
 
 #include <stdio.h>
@@ -223,10 +224,9 @@ static void write_quoted(FILE *out, const char *text)
 /* "phases=({time = ...; set = (...); push = (...);}, ...)"; the caller frees. */
 static char *phases_text(const struct timeline *timeline)
 {
-    char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return NULL;
+    struct text text;
+    if (!text_begin(&text)) return text_end(&text, NULL);
+    FILE *out = text.stream;
     fputs("phases=(", out);
     for (uint32_t k = 0; k < timeline->entry_count; k++) {
         const struct timeline_entry *entry = &timeline->entries[k];
@@ -242,7 +242,7 @@ static char *phases_text(const struct timeline *timeline)
         fputs(entry->push_count ? ");}" : "}", out);
     }
     fputs(")", out);
-    return fclose(out) == 0 ? text : NULL;
+    return text_end(&text, NULL);
 }
 
 /* The first error that was found, without the number of the phase, which users did not choose. */

@@ -6,6 +6,7 @@
 
 #include "live/command.h"
 #include "live/sight.h"
+#include "run/jsontext.h"
 #include "run/manifest.h"
 #include "scene/scene_value.h"
 
@@ -21,7 +22,7 @@ static json_t *number(double value)
 
 static char *text_of(json_t *root)
 {
-    char *text = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9) | JSON_ENSURE_ASCII);
+    char *text = jsontext_dump(root, JSON_COMPACT | JSON_REAL_PRECISION(9) | JSON_ENSURE_ASCII);
     json_decref(root);
     return text;
 }
@@ -135,7 +136,7 @@ static bool is_fixed(const char *path)
     return strncmp(path, "grains.", 7) == 0 && strstr(path, ".radi");
 }
 
-struct key_list { json_t *list; bool look; const char *model; };
+struct key_list { json_t *list; bool look, failed; const char *model; };
 
 /* A model's settings concern its own simulations. */
 static bool concerns(const struct key_list *list, const char *path)
@@ -153,7 +154,11 @@ static void add_key(void *context, const char *path, const struct key *key, cons
     struct key_list *list = context;
     if (is_fixed(path) || !concerns(list, path)) return;
     if (list->look && strncmp(path, "view.", 5) != 0) return;
-    char *text = scene_write_value(key, value);
+    char *text;
+    if (!scene_write_value(key, value, &text)) {
+        list->failed = true;
+        return;
+    }
     json_t *entry = json_pack("{s:s, s:s, s:s, s:s, s:o?, s:o?}", "path", path, "doc", key->doc,
         "unit", key->unit ? key->unit : "", "type", key_type_word(key->type),
         "low", fabs(key->low) < 1e30 ? number(key->low) : NULL,
@@ -169,9 +174,14 @@ static void add_key(void *context, const char *path, const struct key *key, cons
 
 void web_json_keys(void *context, struct session *session)
 {
-    struct key_list list = {json_array(), false, session->sim.model->name};
+    struct key_list list = {.list = json_array(), .model = session->sim.model->name};
     scene_value_each(session->sim.phase_scene, add_key, &list);
     list.look = true;
     scene_value_each(sight_scene(session), add_key, &list);
-    *(char **)context = text_of(list.list);
+    char *text = text_of(list.list);
+    if (list.failed) {
+        free(text);
+        text = NULL;
+    }
+    *(char **)context = text;
 }

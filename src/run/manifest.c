@@ -6,6 +6,7 @@
 
 #include "run/build.h"
 #include "run/folder.h"
+#include "run/jsontext.h"
 
 #include <inttypes.h>
 #include <jansson.h>
@@ -117,11 +118,9 @@ bool manifest_save(const struct manifest *manifest, const char *directory, struc
     char path[FILE_PATH_MAX];
     folder_path(path, directory, "manifest.json");
     json_t *root = describe(manifest);
-    char *text = root ? json_dumps(root, JSON_INDENT(4) | JSON_REAL_PRECISION(9)) : NULL;
+    char *text = jsontext_dump(root, JSON_INDENT(4) | JSON_REAL_PRECISION(9));
     json_decref(root);
-    if (!text) {
-        return error_set(error, "%s: cannot be put together (a name that is not UTF-8?)", path);
-    }
+    if (!text) return error_set(error, "%s: not enough memory to put it together", path);
     struct file file;
     bool done = file_begin(&file, path, error);
     if (done) {

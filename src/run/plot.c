@@ -5,6 +5,7 @@
 #include "run/plot.h"
 
 #include "base/file.h"
+#include "base/text.h"
 #include "run/folder.h"
 #include "run/program.h"
 
@@ -180,14 +181,14 @@ static bool draw(const char *directory, const char *stem, const char *script, si
 bool plot_save(const struct chart *chart, const char *directory, const char *stem,
                unsigned formats, bool *drawn, struct error *error)
 {
-    char path[FILE_PATH_MAX], *script = NULL;
-    size_t size = 0;
+    char path[FILE_PATH_MAX];
+    size_t size;
+    struct text text;
     *drawn = false;
-    FILE *out = open_memstream(&script, &size);
-    if (!out) return error_set(error, "not enough memory for the script of a plot");
-    write_script(out, chart, stem, formats);
-    bool done = fclose(out) == 0 || error_set(error, "not enough memory for a plot");
-    done = done && file_make_directory(directory, error)
+    if (text_begin(&text)) write_script(text.stream, chart, stem, formats);
+    char *script = text_end(&text, &size);
+    if (!script) return error_set(error, "not enough memory for the script of a plot");
+    bool done = file_make_directory(directory, error)
         && chart_save_csv(chart, folder_path(path, directory, "%s.csv", stem), error)
         && file_save(folder_path(path, directory, "%s.gp", stem), script, size, error);
     if (done && plot_available()) {

@@ -4,6 +4,7 @@
  */
 #include "run/sweep.h"
 
+#include "base/text.h"
 #include "run/folder.h"
 #include "run/program.h"
 #include "run/ranks.h"
@@ -40,17 +41,16 @@ struct sweep {
 
 static char *plan_text(const struct plan *plan, uint32_t count)
 {
-    char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return NULL;
+    struct text text;
+    if (!text_begin(&text)) return text_end(&text, NULL);
+    FILE *out = text.stream;
     plan_header(plan, out);
     for (uint32_t point = 0; point < count; point++) {
         fputc('\n', out);
         plan_row(plan, point, out);
     }
     fputc('\n', out);
-    return fclose(out) == 0 ? text : NULL;
+    return text_end(&text, NULL);
 }
 
 /* plan.csv says what the directory is for: a study goes on only with the same points. */
@@ -75,6 +75,11 @@ static bool settle_plan(const struct sweep *sweep, struct error *error)
     } else if (done && setup_is_run(request->directory)) {
         done = error_set_code(error, EXIT_USAGE, "%s: this directory holds a run; choose another "
                               "with -o", request->directory);
+    } else if (done && !request->force) {
+        /* Tables that no study left: without a plan there was none. */
+        char table[FILE_PATH_MAX];
+        done = file_absent(folder_path(table, request->directory, "results.csv"), error)
+            && file_absent(folder_path(table, request->directory, "failed.csv"), error);
     }
     if (done && !old) done = file_save(path, text, strlen(text), error);
     free(old);

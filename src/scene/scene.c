@@ -215,7 +215,7 @@ static struct scene *scene_build(const struct scene_request *request,
             for (int k = 0; k < 4; k++) scene->view.window[k] = NAN;
         }
         resolve_radii(scene);
-        if (resolve_walls(scene)) {
+        if (resolve_walls(scene) && !scene->arena.failed) {
             scene->effects = scene_explain_effects(scene);
             return scene;
         }

@@ -284,8 +284,8 @@ void *scene_settings(const struct scene *scene, const char *name);
  * same scene (same grains, same bytes). */
 bool scene_write(const struct scene *scene, const char *path, struct error *error);
 
-/* The same text into an open stream. */
-void scene_write_text(const struct scene *scene, FILE *out);
+/* The same text into an open stream; false if memory is short. */
+bool scene_write_text(const struct scene *scene, FILE *out);
 
 /* The scene in force at time t (phases). */
 const struct scene *scene_at(const struct scene *scene, double t);

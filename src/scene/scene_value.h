@@ -16,8 +16,8 @@ void scene_value_each(const struct scene *scene,
 bool scene_value_find(const struct scene *scene, const char *path, const struct key **key,
                       const void **value);
 
-/* As a scene file would say it; NULL if it stands for "chosen when absent" or "never", or if
- * memory is short.  The caller frees. */
-char *scene_write_value(const struct key *key, const void *value);
+/* As a scene file would say it: *text, which the caller frees; NULL if it stands for "chosen when
+ * absent" or "never".  False if memory is short. */
+bool scene_write_value(const struct key *key, const void *value, char **text);
 
 #endif

@@ -6,6 +6,7 @@
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "base/file.h"
+#include "base/text.h"
 #include "scene/scene.h"
 #include "scene/scene_key.h"
 #include "scene/scene_value.h"
@@ -139,16 +140,14 @@ static void write_group(FILE *out, const struct key_group *group, const void *ta
 
 /* ---- phases: what a model chose for one of them is written with it ------------------------- */
 
-char *scene_write_value(const struct key *key, const void *at)
+bool scene_write_value(const struct key *key, const void *at, char **value)
 {
-    char *text = NULL;
-    size_t size;
-    if (reason_to_omit(key, at)) return NULL;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return NULL;
-    write_value(out, key, at);
-    fclose(out);
-    return text;
+    struct text text;
+    *value = NULL;
+    if (reason_to_omit(key, at)) return true;
+    if (text_begin(&text)) write_value(text.stream, key, at);
+    *value = text_end(&text, NULL);
+    return *value != NULL;
 }
 
 static bool sets_key(const struct key_texts *set, const char *path)
@@ -165,17 +164,18 @@ static bool sets_key(const struct key_texts *set, const char *path)
 
 /* Keys of a group that differ from the phase before and that the phase itself does not set: a
  * model completed them (a time step, a stiffness). */
-static void write_changes(FILE *out, const struct key_group *group, const char *prefix,
+static bool write_changes(FILE *out, const struct key_group *group, const char *prefix,
                           const void *before, const void *now, const struct key_texts *set,
                           bool *first)
 {
-    for (uint32_t k = 0; k < group->count; k++) {
+    bool done = true;
+    for (uint32_t k = 0; done && k < group->count; k++) {
         const struct key *key = &group->keys[k];
-        char path[200], line[KEY_TEXT_MAX];
+        char path[200], line[KEY_TEXT_MAX], *old = NULL, *value = NULL;
         snprintf(path, sizeof path, "%s.%s", prefix, key->name);
-        char *old = scene_write_value(key, (const char *)before + key->offset);
-        char *value = scene_write_value(key, (const char *)now + key->offset);
-        if (value && (!old || strcmp(old, value) != 0) && !sets_key(set, path)) {
+        done = scene_write_value(key, (const char *)before + key->offset, &old)
+            && scene_write_value(key, (const char *)now + key->offset, &value);
+        if (done && value && (!old || strcmp(old, value) != 0) && !sets_key(set, path)) {
             snprintf(line, sizeof line, "%s=%s", path, value);
             if (!*first) fputs(", ", out);
             write_text(out, line);
@@ -184,9 +184,10 @@ static void write_changes(FILE *out, const struct key_group *group, const char *
         free(old);
         free(value);
     }
+    return done;
 }
 
-static void write_phase(FILE *out, const struct scene *scene, uint32_t index)
+static bool write_phase(FILE *out, const struct scene *scene, uint32_t index)
 {
     const struct phase_entry *entry = &scene->phase_entries[index];
     const struct scene *before = scene->phases[index], *now = scene->phases[index + 1];
@@ -202,59 +203,66 @@ static void write_phase(FILE *out, const struct scene *scene, uint32_t index)
         fprintf(out, "%s\"count_max=%u\"", first ? "" : ", ", now->count_max);
         first = false;
     }
-    for (uint32_t k = 0; k < before->species_count && k < now->species_count; k++) {
+    bool done = true;
+    for (uint32_t k = 0; done && k < before->species_count && k < now->species_count; k++) {
         char prefix[40];
         snprintf(prefix, sizeof prefix, "grains.[%u]", k);
-        write_changes(out, scene_key_sections[0].group, prefix, &before->species[k],
-                      &now->species[k], &entry->set, &first);
+        done = write_changes(out, scene_key_sections[0].group, prefix, &before->species[k],
+                             &now->species[k], &entry->set, &first);
     }
-    for (uint32_t g = 0; g < scene->settings_count; g++) {
-        write_changes(out, scene->settings_groups[g], scene->settings_groups[g]->name,
-                      before->settings[g], now->settings[g], &entry->set, &first);
+    for (uint32_t g = 0; done && g < scene->settings_count; g++) {
+        done = write_changes(out, scene->settings_groups[g], scene->settings_groups[g]->name,
+                             before->settings[g], now->settings[g], &entry->set, &first);
     }
     fputs(");\n", out);
-    if (entry->push.count == 0) return;
+    if (entry->push.count == 0) return done;
     fputs("        push = ", out);
     write_numbers(out, entry->push.values, entry->push.count);
     fputs(";\n", out);
+    return done;
 }
 
-static void write_list(FILE *out, const struct scene_section *section, const struct scene *scene)
+static bool write_list(FILE *out, const struct scene_section *section, const struct scene *scene)
 {
     const char *base = (const char *)scene, *entries;
     uint32_t count;
     memcpy(&entries, base + section->offset, sizeof entries);
     memcpy(&count, base + section->count_offset, sizeof count);
-    if (count == 0) return;
+    if (count == 0) return true;
+    bool done = true;
     fprintf(out, "\n%s = (\n", section->group->name);
-    for (uint32_t k = 0; k < count; k++) {
+    for (uint32_t k = 0; done && k < count; k++) {
         fputs("    {\n", out);
         const bool phase = section->offset == offsetof(struct scene, phase_entries);
-        if (phase && k + 1 < scene->phase_count) write_phase(out, scene, k);
+        if (phase && k + 1 < scene->phase_count) done = write_phase(out, scene, k);
         else write_keys(out, section->group, entries + k * section->group->size, "        ");
         fprintf(out, "    }%s\n", k + 1 < count ? "," : "");
     }
     fputs(");\n", out);
+    return done;
 }
 
-void scene_write_text(const struct scene *scene, FILE *out)
+bool scene_write_text(const struct scene *scene, FILE *out)
 {
     fprintf(out, "# %s, resolved: every key with its value\n", scene->name);
     write_keys(out, &scene_key_top, scene, "");
+    bool done = true;
     for (uint32_t s = 0; s < SCENE_SECTIONS; s++) {
         const struct scene_section *section = &scene_key_sections[s];
-        if (section->list) write_list(out, section, scene);
+        if (section->list) done = done && write_list(out, section, scene);
         else write_group(out, section->group, (const char *)scene + section->offset);
     }
     for (uint32_t g = 0; g < scene->settings_count; g++) {
         write_group(out, scene->settings_groups[g], scene->settings[g]);
     }
+    return done;
 }
 
 bool scene_write(const struct scene *scene, const char *path, struct error *error)
 {
     struct file file;
     if (!file_begin(&file, path, error)) return false;
-    scene_write_text(scene, file.stream);
-    return file_commit(&file, error);
+    if (scene_write_text(scene, file.stream)) return file_commit(&file, error);
+    file_abandon(&file);
+    return error_set(error, "%s: not enough memory to write this scene", path);
 }
