@@ -206,10 +206,11 @@ static double error_of_slip(double share, double steps, const char *integrator)
     char settings[200];
     snprintf(settings, sizeof settings, "dt = %.17g; integrator = \"%s\"; tangential_stiffness = "
              "%.17g;", dt, integrator, share);
+    const char *const rough = "stiffness = 5e7; restitution = 1.0; friction = 100.0;";
     double error = 0;
     for (int k = 0; k < MOMENTS; k++) {
-        error += fabs(collide_later((k + 0.5) / MOMENTS * dt, "stiffness = 5e7; restitution = 1.0; "
-                                    "friction = 100.0;", "0.0", "0.1", settings).tangential - exact);
+        const double gap = (k + 0.5) / MOMENTS * dt;
+        error += fabs(collide_later(gap, rough, "0.0", "0.1", settings).tangential - exact);
     }
     return error / MOMENTS;
 }
@@ -219,9 +220,10 @@ static void test_a_tangential_spring_swings_back_as_far_as_it_was_stretched(void
     (void)unused;
     /* Two springs at right angles: the normal one takes half a swing, in which the tangential one,
      * whose mass is m_eff / (1 + 1/q), q = 1/2, has turned by pi sqrt(3 k_t / k_n).  So the slip is
-     * multiplied by the cosine of it; k_t = k_n / 3 turns it round, as the hardest of hard discs do.
-     * A second-order rule is off by the square of the angle of a step, pi/steps, a few times; a force
-     * half a step ahead would damp by the angle itself: a tenth at 25 steps, a hundredth at 200. */
+     * multiplied by the cosine of it; k_t = k_n / 3 turns it round, as very rough hard discs do.
+     * A second-order rule is off by the square of the angle of a step, pi/steps, a few times; a
+     * force half a step ahead would damp by the angle itself: a tenth at 25 steps, a hundredth at
+     * 200. */
     const double shares[] = {0.1, 1.0 / 3, 0.6, 1};
     for (size_t k = 0; k < sizeof shares / sizeof *shares; k++) {
         for (int gear = 0; gear < 2; gear++) {

@@ -69,9 +69,9 @@ struct ed_clock {
 };
 
 /* So many events must bring the clock on by stuck_step.  Touching discs that are set in motion at
- * once have a few events each; a chain that collapses makes 1e5 among a handful of discs; a blow at
- * the end of a row or a column of N that touch makes N (N - 1) / 2 at one moment.  Rows of more than
- * 2000 are not waited for. */
+ * once have a few events each; a chain that collapses makes 1e5 among a handful of discs; a blow
+ * at the end of a row or a column of N that touch makes N (N - 1) / 2 at one moment.  Rows of more
+ * than 2000 are not waited for. */
 static inline uint64_t ed_stuck_events(uint32_t count)
 {
     const uint64_t row = count < 2000 ? count : 2000;
