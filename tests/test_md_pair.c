@@ -201,12 +201,12 @@ static void test_sliding_friction_obeys_coulomb(void **unused)
 static double error_of_slip(double share, double steps, const char *integrator)
 {
     enum { MOMENTS = 8 };
-    const double time = M_PI / 1e4, dt = time / steps;          /* m_eff = 1/2, k = 5e7 */
+    const double time = M_PI / 1e3, dt = time / steps;          /* m_eff = 1/2, k = 5e5 */
     const double exact = cos(M_PI * sqrt(3 * share));
     char settings[200];
     snprintf(settings, sizeof settings, "dt = %.17g; integrator = \"%s\"; tangential_stiffness = "
              "%.17g;", dt, integrator, share);
-    const char *const rough = "stiffness = 5e7; restitution = 1.0; friction = 100.0;";
+    const char *const rough = "stiffness = 5e5; restitution = 1.0; friction = 100.0;";
     double error = 0;
     for (int k = 0; k < MOMENTS; k++) {
         const double gap = (k + 0.5) / MOMENTS * dt;
@@ -222,14 +222,14 @@ static void test_a_tangential_spring_swings_back_as_far_as_it_was_stretched(void
      * whose mass is m_eff / (1 + 1/q), q = 1/2, has turned by pi sqrt(3 k_t / k_n).  So the slip is
      * multiplied by the cosine of it; k_t = k_n / 3 turns it round, as very rough hard discs do.
      * A second-order rule is off by the square of the angle of a step, pi/steps, a few times; a
-     * force half a step ahead would damp by the angle itself: a tenth at 25 steps, a hundredth at
-     * 200. */
-    const double shares[] = {0.1, 1.0 / 3, 0.6, 1};
+     * force half a step ahead would damp by the angle itself: a tenth at 25 steps, a fortieth at
+     * 100.  (The overlap of a thousandth changes the lever, and the angle, by as little.) */
+    const double shares[] = {0.1, 1.0 / 3, 0.6};
     for (size_t k = 0; k < sizeof shares / sizeof *shares; k++) {
         for (int gear = 0; gear < 2; gear++) {
             const char *integrator = gear ? "gear" : "verlet";
             CHECK_NEAR(error_of_slip(shares[k], 25, integrator), 0, 3 * pow(M_PI / 25, 2));
-            CHECK_NEAR(error_of_slip(shares[k], 200, integrator), 0, 3 * pow(M_PI / 200, 2));
+            CHECK_NEAR(error_of_slip(shares[k], 100, integrator), 0, 3 * pow(M_PI / 100, 2));
         }
     }
 }
