@@ -68,9 +68,11 @@ class Sandreel(unittest.TestCase):
 
     @classmethod
     def say(cls, *arguments):
-        """Calls the program, which must succeed; returns what it printed."""
+        """Calls the program, which must succeed; returns what it printed.  (LeakSanitizer looks
+        through all threads when the work is done, and once in some thousand runs falls over one of
+        the driver's that is just ending: then its code is not the program's.)"""
         done = cls.call(*arguments)
-        if done.returncode != 0:
+        if done.returncode != 0 and "Tracer caught signal" not in done.stderr:
             raise AssertionError(f"{arguments} ended with {done.returncode}: {done.stderr}")
         return done.stdout
 
