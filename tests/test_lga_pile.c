@@ -252,7 +252,9 @@ static void test_a_poured_heap_is_almost_as_steep_as_the_lattice(void **unused)
      * reference are known to 0.34 and 0.17 and not better, whatever they happened to show (0.1 and
      * 0.4 degrees, 0.2), and twelve of ours to half of that.  Two of both are allowed. */
     const struct shape shape = shape_of(0.5, 0.5, 12);
-    CHECK_NEAR(sample_mean(&shape.slope), 56.5, 2 * hypot(0.34, 0.17));
+    /* Of the slope twice the reference's own error of 0.34 would be more than its 0.1 by four and
+     * 0.2 degrees for which part of a flank is upper: the narrower holds. */
+    CHECK_NEAR(sample_mean(&shape.slope), 56.5, 4 * 0.1 + 0.2);
     CHECK_NEAR(sample_mean(&shape.angle), 58.5, 2 * hypot(0.4, 0.18));
     CHECK_NEAR(sample_mean(&shape.tail), 1.8, 2 * hypot(0.2, 0.09));
     /* Single seeds gave 0.32 to 0.36 nodes and 0.70 to 1.02: a range is about 1.7 deviations. */
