@@ -297,9 +297,10 @@ static void test_sand_that_loses_more_runs_out_ever_more_slowly(void **unused)
     /* k = 0.9.  The length of the reference's windows is not told; with 400 ticks V and H both give
      * all of its seven numbers.  Single seeds scatter by 0.1 in the first and by 0.05 in the last,
      * and the reference is rounded to 0.1; while the flow falls, from the third to the fifth, ten
-     * ticks more or less are as much again.  Both sides scatter: 0.3 and 0.2 are allowed.  The slopes
-     * are those of the lattice but for a step or two in each flank, and hardly scatter: 0.03 degrees
-     * in V, where counting nodes of one grain or only full ones makes 0.05 more, 0.1 in H. */
+     * ticks more or less are as much again.  Both sides scatter: 0.3 and 0.2 are allowed.  The
+     * slopes are those of the lattice but for a step or two in each flank, and hardly scatter: 0.03
+     * degrees in V, where counting nodes of one grain or only full ones makes 0.05 more, 0.1 in
+     * H. */
     static const double flow[2][7] = {{10.5, 9.1, 6.3, 4.8, 4.0, 3.5, 3.0},
                                       {10.0, 10.2, 9.2, 6.0, 4.7, 3.9, 3.5}};
     static const double angle[2] = {59.5, 28.53};

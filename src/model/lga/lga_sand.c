@@ -85,8 +85,8 @@ static void fall_sand(struct lga *lga, uint32_t site)
 }
 
 /* Sandpile: one of the movers bends down, any of those that have a free slot there and neither a
- * rest grain nor a wall in the way.  (Bent into the plate at once, a grain that bounced off it would
- * never leave its node, and a heap would have no tail.) */
+ * rest grain nor a wall in the way.  (Bent into the plate at once, a grain that bounced off it
+ * would never leave its node, and a heap would have no tail.) */
 static void bend_sand(struct lga *lga, uint32_t site)
 {
     const unsigned moving = lga->moving[site];
