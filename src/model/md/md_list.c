@@ -1,50 +1,18 @@
-/* md_list.c - the neighbour list: cells, sorting, pairs within reach plus a skin.
+/* md_list.c - the neighbour list: pairs within reach plus a skin.
  *
- * Cells are at least as wide as the largest reach, so partners sit in the nine cells around.
- * Grains are sorted by cell, the shorter side of the box running fastest; a pair belongs to the
- * grain of lower index.  Strips (md.h) list their pairs side by side, each into its own stretch
- * of a scratch array, and the stretches are then pushed together.
+ * Grains are sorted by cell (md_sort.h); a pair belongs to the grain of lower index.  Strips
+ * (md.h) list their pairs side by side, each into its own stretch of a scratch array, and the
+ * stretches are then pushed together.
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "model/md/md_list.h"
 
+#include "model/md/md_sort.h"
 #include "model/md/md_walls.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#define NONE UINT32_MAX
-
-/* A loop over grains, or over their links, in which each turn writes only its own. */
-#define SHARED_LOOP                                                                        \
-    _Pragma("omp parallel for num_threads(md->thread_count) if (md->count > STRIP_GRAINS)")
-
-struct md_scratch {
-    uint32_t cell_max, fast, slow;      /* cells along the fast and the slow axis */
-    bool     x_is_fast;
-    double   x0, y0, per_x, per_y;      /* origin and cells per length */
-    uint32_t nx, ny;
-    uint32_t *cell_first;       /* [cells + 1] */
-    uint32_t *cell_of;          /* by old index */
-    uint32_t *order;            /* old index by new */
-    uint32_t *place;            /* new index by old; NONE: has left */
-    struct grain *grains;
-    struct half  *halves;
-    struct tag   *tags;
-    struct trait *traits;
-    struct turn  *turns;
-    struct gear  *gears;
-    uint32_t *collisions;
-    float    *collision_rate;
-    uint32_t *kept_first;       /* contacts that go on: the first of those whose new first grain */
-    uint32_t *kept_next;        /* this is, the next of them by link, NONE at the end */
-    uint32_t *kept_partner;     /* by link */
-    struct link *links;         /* stretches of the strips: inner from below, cross from above */
-    double   *springs;
-    uint32_t *inner, *cross;    /* by strip: how many */
-    uint32_t links_per_grain;
-};
 
 static uint32_t links_per_grain(const struct scene *scene, double skin)
 {
@@ -85,135 +53,10 @@ bool md_list_create(struct md *md)
         && arena_array(arena, &s->kept_first, n)
         && arena_array(arena, &s->kept_next, md->link_max)
         && arena_array(arena, &s->kept_partner, md->link_max)
-        && arena_array(arena, &s->links, md->link_max)
-        && arena_array(arena, &s->springs, springs ? md->link_max : 0)
+        && arena_array(arena, &s->links, md->link_max + md->strip_max)
+        && arena_array(arena, &s->springs, springs ? md->link_max + md->strip_max : 0)
         && arena_array(arena, &s->inner, md->strip_max)
         && arena_array(arena, &s->cross, md->strip_max);
-}
-
-/* Brings grains back into a periodic box. */
-static void wrap(struct md *md)
-{
-    const double *box = md->scene->box;
-    const double width = box[2] - box[0], height = box[3] - box[1];
-    const bool along_x = md->scene->left == BORDER_PERIODIC;
-    const bool along_y = md->scene->bottom == BORDER_PERIODIC;
-    SHARED_LOOP
-    for (uint32_t i = 0; i < md->count; i++) {
-        struct grain *g = &md->grains[i];
-        const bool out_x = g->x < box[0] || g->x >= box[2];
-        const bool out_y = g->y < box[1] || g->y >= box[3];
-        if (along_x && out_x) g->x -= width * floor((g->x - box[0]) / width);
-        if (along_y && out_y) g->y -= height * floor((g->y - box[1]) / height);
-    }
-}
-
-/* Lays the cells over all grains; over the box along periodic axes. */
-static void lay_cells(struct md *md)
-{
-    struct md_scratch *s = md->scratch;
-    const double *box = md->scene->box;
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    const bool periodic[2] = {md->scene->left == BORDER_PERIODIC,
-                              md->scene->bottom == BORDER_PERIODIC};
-    const bool spread = !periodic[0] || !periodic[1];
-    for (uint32_t i = 0; spread && i < md->count; i++) {
-        const double x = md->grains[i].x, y = md->grains[i].y;
-        low[0] = x < low[0] ? x : low[0];
-        high[0] = x > high[0] ? x : high[0];
-        low[1] = y < low[1] ? y : low[1];
-        high[1] = y > high[1] ? y : high[1];
-    }
-    double size = md->reach_max + md->skin;
-    uint32_t cells[2];
-    for (;; size *= 1.25) {
-        double product = 1;
-        for (int axis = 0; axis < 2; axis++) {
-            if (periodic[axis]) {
-                low[axis] = box[axis];
-                high[axis] = box[axis + 2];
-            }
-            const double span = fmax(high[axis] - low[axis], 0) / size;
-            product *= fmax(1, floor(span) + !periodic[axis]);
-        }
-        if (product <= s->cell_max) break;
-    }
-    for (int axis = 0; axis < 2; axis++) {
-        const double span = fmax(high[axis] - low[axis], 0);
-        cells[axis] = (uint32_t)fmax(1, floor(span / size) + !periodic[axis]);
-        const double width = periodic[axis] ? span / cells[axis] : size;
-        if (axis == 0) s->per_x = 1 / width;
-        else s->per_y = 1 / width;
-    }
-    s->x0 = low[0];
-    s->y0 = low[1];
-    s->nx = cells[0];
-    s->ny = cells[1];
-    s->x_is_fast = cells[0] < cells[1];
-    s->fast = s->x_is_fast ? s->nx : s->ny;
-    s->slow = s->x_is_fast ? s->ny : s->nx;
-}
-
-static uint32_t cell_index(const struct md_scratch *s, uint32_t cx, uint32_t cy)
-{
-    return s->x_is_fast ? cy * s->fast + cx : cx * s->fast + cy;
-}
-
-static uint32_t cell_along(double place, double per, uint32_t cells)
-{
-    const double c = place * per;
-    return c < 0 ? 0 : c >= cells ? cells - 1 : (uint32_t)c;
-}
-
-/* Counting sort by cell, stable; grains that have left come to no place. */
-static void sort_grains(struct md *md)
-{
-    struct md_scratch *s = md->scratch;
-    const uint32_t cells = s->nx * s->ny, old_count = md->count;
-    SHARED_LOOP
-    for (uint32_t i = 0; i < old_count; i++) {
-        const struct grain *g = &md->grains[i];
-        s->cell_of[i] = md->tags[i].gone ? NONE
-                      : cell_index(s, cell_along(g->x - s->x0, s->per_x, s->nx),
-                                   cell_along(g->y - s->y0, s->per_y, s->ny));
-    }
-    memset(s->cell_first, 0, (cells + 1) * sizeof *s->cell_first);
-    for (uint32_t i = 0; i < old_count; i++) {
-        if (s->cell_of[i] != NONE) s->cell_first[s->cell_of[i] + 1]++;
-    }
-    for (uint32_t c = 0; c < cells; c++) s->cell_first[c + 1] += s->cell_first[c];
-    md->count = s->cell_first[cells];
-    for (uint32_t i = 0; i < old_count; i++) {
-        s->place[i] = NONE;
-        if (s->cell_of[i] == NONE) continue;
-        s->place[i] = s->cell_first[s->cell_of[i]]++;
-        s->order[s->place[i]] = i;
-    }
-    for (uint32_t c = cells; c > 0; c--) s->cell_first[c] = s->cell_first[c - 1];
-    s->cell_first[0] = 0;
-}
-
-#define SWAP(a, b) do { void *swap_ = (a); (a) = (b); (b) = swap_; } while (0)
-
-#define PERMUTE(array)                                                                     \
-    do {                                                                                   \
-        if (!md->array) break;                                                             \
-        SHARED_LOOP                                                                        \
-        for (uint32_t i = 0; i < md->count; i++) s->array[i] = md->array[s->order[i]];     \
-        SWAP(md->array, s->array);                                                         \
-    } while (0)
-
-static void permute(struct md *md)
-{
-    struct md_scratch *s = md->scratch;
-    PERMUTE(grains);
-    PERMUTE(halves);
-    PERMUTE(tags);
-    PERMUTE(traits);
-    PERMUTE(turns);
-    PERMUTE(gears);
-    PERMUTE(collisions);
-    PERMUTE(collision_rate);
 }
 
 /* Chains the contacts of the old list by the new index of their first grain. */
@@ -265,13 +108,19 @@ FORCE_INLINE struct cell cell_on(const struct md_scratch *s, struct cell cell, u
 /* Stretches of one cell's neighbourhood: grains first..last-1 seen as image `image`. */
 struct stretch { uint32_t first, last, image; };
 
-static uint32_t near_border(const struct md *md, struct cell here, struct stretch out[static 9])
+struct neighbours {
+    uint32_t count;
+    struct stretch stretches[9];
+};
+
+static void near_border(const struct md *md, struct cell here, struct neighbours *around)
 {
     const struct md_scratch *s = md->scratch;
     const uint32_t cx = s->x_is_fast ? here.along : here.across;
     const uint32_t cy = s->x_is_fast ? here.across : here.along;
     const bool along_x = md->scene->left == BORDER_PERIODIC;
     const bool along_y = md->scene->bottom == BORDER_PERIODIC;
+    struct stretch *const out = around->stretches;
     uint32_t count = 0;
     for (int a = -1; a <= 1; a++) {
         for (int b = -1; b <= 1; b++) {
@@ -288,7 +137,7 @@ static uint32_t near_border(const struct md *md, struct cell here, struct stretc
                 image += ny < 0 ? 6 : 3;
                 ny = ny < 0 ? s->ny - 1 : 0;
             }
-            const uint32_t cell = cell_index(s, (uint32_t)nx, (uint32_t)ny);
+            const uint32_t cell = md_sort_cell(s, (uint32_t)nx, (uint32_t)ny);
             if (cell < here.index) continue;
             const struct stretch next = {s->cell_first[cell], s->cell_first[cell + 1], image};
             struct stretch *before = count > 0 ? &out[count - 1] : NULL;
@@ -299,19 +148,23 @@ static uint32_t near_border(const struct md *md, struct cell here, struct stretc
             }
         }
     }
-    return count;
+    around->count = count;
 }
 
-FORCE_INLINE uint32_t neighbourhood(const struct md *md, struct cell here,
-                                    struct stretch out[static 9])
+/* Is the cell inside the box, with all its neighbours? */
+FORCE_INLINE bool neighbourhood(const struct md *md, struct cell here, struct neighbours *around)
 {
     const struct md_scratch *s = md->scratch;
     const uint32_t *const at = &s->cell_first[here.index];
     if (here.along == 0 || here.along + 1 == s->fast || here.across == 0
-        || here.across + 1 == s->slow) return near_border(md, here, out);
-    out[0] = (struct stretch){at[0], at[2], 0};
-    out[1] = (struct stretch){at[s->fast - 1], at[s->fast + 2], 0};
-    return 2;
+        || here.across + 1 == s->slow) {
+        near_border(md, here, around);
+        return false;
+    }
+    around->count = 2;
+    around->stretches[0] = (struct stretch){at[0], at[2], 0};
+    around->stretches[1] = (struct stretch){at[s->fast - 1], at[s->fast + 2], 0};
+    return true;
 }
 
 /* Does link `at` of the new list go on with a contact that grain j had, one of those from `k` on?
@@ -325,79 +178,159 @@ static void carry_contact(const struct md *md, uint32_t k, uint32_t j, uint32_t 
     if (s->springs) s->springs[at] = md->springs[k];
 }
 
-/* A strip's stretch of the scratch array: links within the strip from below, those to later strips
- * from above. */
-struct listing { uint32_t begin, room, inner, cross, strip_last; };
+/* A strip's part of the scratch array: links within the strip from below, those to later strips
+ * from above, and one place more than there is room for. */
+struct listing {
+    uint32_t begin, room, inner, cross;
+    uint32_t strip_last;
+};
 
-/* Lists the links of grain i to those near it.  False: no room. */
-FORCE_INLINE bool list_any(const struct md *md, struct listing *out, uint32_t i,
-                           struct stretch near, bool sizes)
+static uint32_t listing_end(const struct listing *out) { return out->begin + out->room + 1; }
+
+static struct listing listing_of(const struct md *md, uint32_t t)
 {
-    const struct md_scratch *s = md->scratch;
-    const struct trait *const traits = md->traits;
-    const double reach_one = 2 * md->radius_one + md->skin;
-    const double x = md->grains[i].x - md->image_x[near.image];
-    const double y = md->grains[i].y - md->image_y[near.image];
-    for (uint32_t j = near.first; j < near.last; j++) {
-        const double dx = x - md->grains[j].x, dy = y - md->grains[j].y;
-        const double reach = sizes ? traits[i].radius + traits[j].radius + md->skin : reach_one;
-        if (dx * dx + dy * dy >= reach * reach) continue;
-        if (out->inner + out->cross == out->room) return false;
-        const bool crosses = j >= out->strip_last;
-        const uint32_t at = out->begin + (crosses ? out->room - ++out->cross : out->inner++);
-        s->links[at] = (struct link){i, j | near.image << LINK_IMAGE_SHIFT};
-        if (s->springs) s->springs[at] = 0;
-        if (s->kept_first[i] != NONE) carry_contact(md, s->kept_first[i], j, at);
-    }
-    return true;
+    const struct strip *strip = &md->strips[t];
+    const uint32_t per_grain = md->scratch->links_per_grain;
+    return (struct listing){.begin = strip->first * per_grain + t,
+                            .room = (strip->last - strip->first) * per_grain,
+                            .strip_last = strip->last};
 }
 
-/* The same where nothing can be in the way: all within the strip and the box, room for all, no
- * contacts to carry on.  Whether a pair is near is as good as random, so there is no branch. */
-FORCE_INLINE uint32_t list_plain(const struct md *md, struct link *links, uint32_t i,
-                                 struct stretch near, bool sizes)
+struct place { double x, y; };
+
+/* Where the image of grain i is to which the partners of that image are near. */
+FORCE_INLINE struct place seen_from(const struct md *md, uint32_t i, uint32_t image)
+{
+    return (struct place){md->grains[i].x - md->image_x[image],
+                          md->grains[i].y - md->image_y[image]};
+}
+
+/* Lists the links of grain i, which is at `at`, to those near it, upwards from `links` or
+ * downwards; how many.
+ * Whether a pair is near is as good as random, so there is no branch: what is not near is written
+ * too, and written over. */
+FORCE_INLINE uint32_t list_near(const struct md *md, struct link *links, bool down, uint32_t i,
+                                struct place at, struct stretch near, bool sizes)
 {
     const struct grain *const grains = md->grains;
     const struct trait *const traits = md->traits;
     const double reach_one = 2 * md->radius_one + md->skin, skin = md->skin;
-    const double x = grains[i].x, y = grains[i].y;
+    const uint32_t image = near.image << LINK_IMAGE_SHIFT;
     uint32_t count = 0;
     for (uint32_t j = near.first; j < near.last; j++) {
-        const double dx = x - grains[j].x, dy = y - grains[j].y;
+        const double dx = at.x - grains[j].x, dy = at.y - grains[j].y;
         const double reach = sizes ? traits[i].radius + traits[j].radius + skin : reach_one;
-        links[count] = (struct link){i, j};
+        *(down ? links - count : links + count) = (struct link){i, j | image};
         count += dx * dx + dy * dy < reach * reach;
     }
     return count;
 }
 
+/* Where room gets short, no more are looked at in one go than there are places.  False: no room. */
+FORCE_INLINE bool list_stretch(const struct md *md, struct listing *out, uint32_t i,
+                               struct stretch near, bool cross, bool sizes)
+{
+    struct link *const links = md->scratch->links;
+    const struct place at = seen_from(md, i, near.image);
+    while (near.first < near.last) {
+        const uint32_t places = out->room - out->inner - out->cross + 1;
+        struct stretch part = near;
+        if (near.last - near.first > places) part.last = near.first + places;
+        if (cross) {
+            struct link *from = &links[listing_end(out) - 1 - out->cross];
+            out->cross += list_near(md, from, true, i, at, part, sizes);
+        } else {
+            struct link *from = &links[out->begin + out->inner];
+            out->inner += list_near(md, from, false, i, at, part, sizes);
+        }
+        if (out->inner + out->cross > out->room) return false;
+        near.first = part.last;
+    }
+    return true;
+}
+
+/* Contacts that grain i had go on in its links, those listed after `inner` and `cross` others. */
+static void carry_contacts(const struct md *md, uint32_t i, const struct listing *out,
+                           uint32_t inner, uint32_t cross)
+{
+    const struct md_scratch *s = md->scratch;
+    const uint32_t end = listing_end(out);
+    const uint32_t ranges[2][2] = {{out->begin + inner, out->begin + out->inner},
+                                   {end - out->cross, end - cross}};
+    for (int r = 0; r < 2; r++) {
+        for (uint32_t at = ranges[r][0]; at < ranges[r][1]; at++) {
+            if (s->springs) s->springs[at] = 0;
+            carry_contact(md, s->kept_first[i], s->links[at].j & LINK_INDEX, at);
+        }
+    }
+}
+
+/* Lists the links of the grains first..last-1 of a cell, whose neighbourhood may reach over the
+ * strip's end. */
+FORCE_INLINE bool list_cell(const struct md *md, struct listing *out, uint32_t first,
+                            uint32_t last, const struct neighbours *around, bool sizes)
+{
+    const struct md_scratch *s = md->scratch;
+    for (uint32_t i = first; i < last; i++) {
+        const uint32_t inner = out->inner, cross = out->cross;
+        for (uint32_t r = 0; r < around->count; r++) {
+            struct stretch near = around->stretches[r], later = near;
+            near.first = near.first > i ? near.first : i + 1;
+            later.first = near.first > out->strip_last ? near.first : out->strip_last;
+            near.last = near.last < out->strip_last ? near.last : out->strip_last;
+            if (!list_stretch(md, out, i, near, false, sizes)
+                || !list_stretch(md, out, i, later, true, sizes)) return false;
+        }
+        if (s->springs || s->kept_first[i] != NONE) carry_contacts(md, i, out, inner, cross);
+    }
+    return true;
+}
+
+/* The same well inside the box and the strip, with room for all that could be near. */
+FORCE_INLINE void list_inner_cell(const struct md *md, struct listing *out, uint32_t first,
+                                  uint32_t last, const struct neighbours *around, bool sizes)
+{
+    const struct md_scratch *s = md->scratch;
+    struct stretch own = around->stretches[0], row = around->stretches[1];
+    own.image = 0;
+    row.image = 0;
+    uint32_t inner = out->inner;
+    for (uint32_t i = first; i < last; i++) {
+        const struct place at = {md->grains[i].x, md->grains[i].y};
+        const uint32_t before = inner;
+        own.first = i + 1;
+        inner += list_near(md, &s->links[out->begin + inner], false, i, at, own, sizes);
+        inner += list_near(md, &s->links[out->begin + inner], false, i, at, row, sizes);
+        out->inner = inner;
+        if (s->springs || s->kept_first[i] != NONE) carry_contacts(md, i, out, before, out->cross);
+    }
+}
+
+/* Is there no need to look where the links of these grains of an inner cell go, and whether there
+ * is room? */
+FORCE_INLINE bool is_plain(const struct listing *out, uint32_t first, uint32_t last,
+                           const struct neighbours *around)
+{
+    const struct stretch *const near = around->stretches;
+    const uint64_t grains = last - first;
+    const uint64_t most = grains * (near[0].last - first + near[1].last - near[1].first);
+    return near[1].last <= out->strip_last && most + out->inner + out->cross <= out->room;
+}
+
 FORCE_INLINE bool list_strip(struct md *md, uint32_t t, bool sizes)
 {
     struct md_scratch *s = md->scratch;
-    const struct strip *strip = &md->strips[t];
-    struct listing out = {
-        .begin = strip->first * s->links_per_grain,
-        .room = (strip->last - strip->first) * s->links_per_grain, .strip_last = strip->last
-    };
-    uint32_t cell_end = 0, stretches = 0;
-    struct stretch around[9];
+    struct listing out = listing_of(md, t);
+    struct neighbours around;
     struct cell cell = {0};
-    for (uint32_t i = strip->first; i < strip->last; i++) {
-        if (i >= cell_end) {
-            cell = cell_on(s, cell, i);
-            cell_end = s->cell_first[cell.index + 1];
-            stretches = neighbourhood(md, cell, around);
-        }
-        const bool carries = s->springs || s->kept_first[i] != NONE;
-        for (uint32_t r = 0; r < stretches; r++) {
-            struct stretch near = around[r];
-            near.first = near.first > i ? near.first : i + 1;
-            const bool fits = near.last + out.inner + out.cross <= near.first + out.room;
-            if (!carries && !near.image && near.last <= strip->last && fits) {
-                out.inner += list_plain(md, &s->links[out.begin + out.inner], i, near, sizes);
-            } else if (!list_any(md, &out, i, near, sizes)) {
-                return false;
-            }
+    for (uint32_t i = md->strips[t].first, last; i < out.strip_last; i = last) {
+        cell = cell_on(s, cell, i);
+        const uint32_t cell_last = s->cell_first[cell.index + 1];
+        last = cell_last < out.strip_last ? cell_last : out.strip_last;
+        if (neighbourhood(md, cell, &around) && is_plain(&out, i, last, &around)) {
+            list_inner_cell(md, &out, i, last, &around, sizes);
+        } else if (!list_cell(md, &out, i, last, &around, sizes)) {
+            return false;
         }
     }
     s->inner[t] = out.inner;
@@ -434,10 +367,9 @@ static bool join_strips(struct md *md)
     SHARED_LOOP
     for (uint32_t t = 0; t < md->strip_count; t++) {
         const struct strip *strip = &md->strips[t];
-        const uint32_t begin = strip->first * s->links_per_grain;
-        const uint32_t end = strip->last * s->links_per_grain;
-        move_links(md, strip->link_first, begin, s->inner[t]);
-        move_links(md, strip->cross_first, end - s->cross[t], s->cross[t]);
+        const struct listing out = listing_of(md, t);
+        move_links(md, strip->link_first, out.begin, s->inner[t]);
+        move_links(md, strip->cross_first, listing_end(&out) - s->cross[t], s->cross[t]);
     }
     return true;
 }
@@ -478,7 +410,7 @@ struct md_cells md_list_cells(const struct md *md)
 
 void md_list_cell(const struct md *md, uint32_t cx, uint32_t cy, uint32_t *first, uint32_t *last)
 {
-    const uint32_t cell = cell_index(md->scratch, cx, cy);
+    const uint32_t cell = md_sort_cell(md->scratch, cx, cy);
     *first = md->scratch->cell_first[cell];
     *last = md->scratch->cell_first[cell + 1];
 }
@@ -496,11 +428,9 @@ static bool list_full(struct md *md, const char *what)
 bool md_list_rebuild(struct md *md)
 {
     struct md_scratch *s = md->scratch;
-    wrap(md);
-    lay_cells(md);
-    sort_grains(md);
+    md_sort_find(md);
     keep_contacts(md);
-    permute(md);
+    md_sort_permute(md);
     cut_strips(md);
     bool room = true;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(md->thread_count) \

@@ -99,8 +99,6 @@ FORCE_INLINE void gather(const struct md *md, struct md_window *w, unsigned kern
         const uint32_t i = md->links[link].i, j = md->links[link].j & LINK_INDEX;
         const struct grain *a = &md->grains[i], *b = &md->grains[j];
         const struct trait *s = differ ? &md->traits[i] : NULL, *t = differ ? &md->traits[j] : NULL;
-        w->i[k] = i;
-        w->j[k] = j;
         if (kernel & DAMPED) {
             w->ux[k] = a->ux - b->ux;
             w->uy[k] = a->uy - b->uy;

@@ -8,7 +8,7 @@
 /* The touching pairs of a window: what the force loop reads, and the forces it leaves. */
 struct md_window {
     uint32_t count;
-    uint32_t link[WINDOW], i[WINDOW], j[WINDOW];
+    uint32_t link[WINDOW];
     double dx[WINDOW], dy[WINDOW];
     double ux[WINDOW], uy[WINDOW];      /* velocity of i relative to j */
     double rims[WINDOW];                /* sum of the rim speeds */

@@ -125,8 +125,8 @@ static void predict_gear(struct md *md, uint32_t t)
 struct forces { struct push *pushes; double *twists; };     /* twists: NULL where none spins */
 
 /* Moves the grains first..last-1 by their forces and empties the forces. */
-FORCE_INLINE uint64_t move(struct md *md, struct forces forces, uint32_t first, uint32_t last,
-                          uint64_t fastest, unsigned form)
+FORCE_INLINE void move(struct md *md, struct forces forces, uint32_t first, uint32_t last,
+                       unsigned form)
 {
     const double gx = md->scene->gravity[0], gy = md->scene->gravity[1];
     for (uint32_t i = first; i < last; i++) {
@@ -145,8 +145,16 @@ FORCE_INLINE uint64_t move(struct md *md, struct forces forces, uint32_t first, 
         }
         if (form & GEAR) correct_gear(md, i, ax, ay, at, form);
         else move_verlet(md, i, ax, ay, at, form);
-        const struct half h = md->halves[i];
-        const uint64_t speed2 = bits_of(h.hx * h.hx + h.hy * h.hy);
+    }
+}
+
+/* Not while they move: there each comparison waits for the one before, here it is made of many
+ * grains at once. */
+CLONES static uint64_t fastest_of(const struct half *halves, uint32_t count, uint64_t fastest)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        const double hx = halves[i].hx, hy = halves[i].hy;
+        const uint64_t speed2 = bits_of(hx * hx + hy * hy);
         fastest = speed2 > fastest ? speed2 : fastest;
     }
     return fastest;
@@ -163,11 +171,11 @@ static uint64_t move_grains(const unsigned form, struct md *md, struct forces fo
                            uint32_t first, uint32_t last, uint64_t fastest)
 {
     switch (form) {
-#define X(form) case form: return move(md, forces, first, last, fastest, form);
+#define X(form) case form: move(md, forces, first, last, form); break;
     FORMS(X)
 #undef X
     }
-    return fastest;
+    return fastest_of(md->halves + first, last - first, fastest);
 }
 
 /* Forces of the links from strip t to later ones. */
@@ -209,17 +217,19 @@ static void add_cross(struct md *md, uint32_t t, struct forces forces)
     }
 }
 
-FORCE_INLINE void scatter(const struct md_window *w, struct forces forces, bool rotates)
+FORCE_INLINE void scatter(const struct link *links, const struct md_window *w,
+                          struct forces forces, bool rotates)
 {
     for (uint32_t c = 0; c < w->count; c++) {
-        struct push *a = &forces.pushes[w->i[c]], *b = &forces.pushes[w->j[c]];
+        const uint32_t i = links[w->link[c]].i, j = links[w->link[c]].j & LINK_INDEX;
+        struct push *a = &forces.pushes[i], *b = &forces.pushes[j];
         a->fx += w->fx[c];
         a->fy += w->fy[c];
         b->fx -= w->fx[c];
         b->fy -= w->fy[c];
         if (rotates) {
-            forces.twists[w->i[c]] += w->ft[c];
-            forces.twists[w->j[c]] += w->ft[c];
+            forces.twists[i] += w->ft[c];
+            forces.twists[j] += w->ft[c];
         }
     }
 }
@@ -240,8 +250,8 @@ static void sweep(struct md *md, uint32_t t, struct forces forces, struct md_win
     for (uint32_t k = strip->link_first; k < strip->link_last;) {
         const uint32_t left = strip->link_last - k, last = k + (left < WINDOW ? left : WINDOW);
         md_pairs_window(md, k, last, w, &sums);
-        if (form & ROTATES) scatter(w, forces, true);
-        else scatter(w, forces, false);
+        if (form & ROTATES) scatter(md->links, w, forces, true);
+        else scatter(md->links, w, forces, false);
         k = last;
         const uint32_t next = k < strip->link_last ? md->links[k].i : strip->last;
         fastest = move_grains(form, md, forces, done, next, fastest);
