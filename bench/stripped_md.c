@@ -2,7 +2,7 @@
  *
  * The algorithm of md: leapfrog; grains sorted by cell; a list of pairs with a skin; windows of
  * pairs that touch, worked by SIMD.  It does what any run must: velocities of the present, contacts
- * counted (anew with each list), overlaps watched.  It has no radii, masses or spins, no walls, one
+ * counted (those that go on are known again in a new list), overlaps watched.  It has no radii, masses or spins, no walls, one
  * strip and one thread.
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -20,8 +20,9 @@
 #endif
 
 #define SIDE 140.0
-enum { CELLS = 107, CELL_COUNT = CELLS * CELLS, PAIRS = 5, WINDOW = 128, AHEAD = 32, IMAGES = 9,
-       INDEX_BITS = 27 };
+enum { CELLS = 107, CELL_COUNT = CELLS * CELLS, PAIRS = 5, WINDOW = 256, AHEAD = 32, IMAGES = 9,
+       INDEX_BITS = 27,
+       CELL_PAIRS = 144 };     /* more than a cell of discs that hardly overlap can have */
 
 static const double dt = 5e-4, stiffness = 1e4, skin = 0.15, mass = 1, overlap_limit = 0.5;
 
@@ -43,8 +44,8 @@ struct gas {
     struct half *halves, *halves_spare;
     uint64_t contacts, suspects;
     struct push *pushes;
-    struct pair *pairs;
-    uint32_t *ids, *ids_spare, *cell_of;
+    struct pair *pairs, *kept;          /* kept: contacts that go on, by new indices */
+    uint32_t *ids, *ids_spare, *cell_of, *place, *pair_first;
     uint32_t cell_first[CELL_COUNT + 1];
     double   image_x[IMAGES], image_y[IMAGES];
     double   travel, stride;
@@ -64,12 +65,13 @@ static void sort_bodies(struct gas *g)
     memset(first, 0, sizeof g->cell_first);
     for (uint32_t i = 0; i < g->count; i++) {
         struct body *b = &g->bodies[i];
-        b->x -= SIDE * floor(b->x / SIDE);
-        b->y -= SIDE * floor(b->y / SIDE);
+        if (b->x < 0 || b->x >= SIDE) b->x -= SIDE * floor(b->x / SIDE);
+        if (b->y < 0 || b->y >= SIDE) b->y -= SIDE * floor(b->y / SIDE);
         const uint32_t cx = (uint32_t)(b->x * (CELLS / SIDE));
         const uint32_t cy = (uint32_t)(b->y * (CELLS / SIDE));
-        g->cell_of[i] = (cx < CELLS ? cx : CELLS - 1) * CELLS + (cy < CELLS ? cy : CELLS - 1);
-        first[g->cell_of[i] + 1]++;
+        const uint32_t cell = (cx < CELLS ? cx : CELLS - 1) * CELLS + (cy < CELLS ? cy : CELLS - 1);
+        g->cell_of[i] = cell;
+        first[cell + 1]++;
     }
     for (uint32_t c = 0; c < CELL_COUNT; c++) first[c + 1] += first[c];
     for (uint32_t i = 0; i < g->count; i++) {
@@ -77,6 +79,7 @@ static void sort_bodies(struct gas *g)
         g->bodies_spare[place] = g->bodies[i];
         g->halves_spare[place] = g->halves[i];
         g->ids_spare[place] = g->ids[i];
+        g->place[i] = place;
     }
     for (uint32_t c = CELL_COUNT; c > 0; c--) first[c] = first[c - 1];
     first[0] = 0;
@@ -118,16 +121,43 @@ static uint32_t around(const struct gas *g, uint32_t cx, uint32_t cy, struct str
     return count;
 }
 
-static void list_body(struct gas *g, uint32_t i, const struct stretch *stretch)
+/* The pairs of grain i with that stretch, from place `count` on.  Whether a pair is near is as good
+ * as random, so there is no branch. */
+static inline uint32_t list_body(const struct gas *g, uint32_t i, struct stretch stretch,
+                                 struct pair *pairs, uint32_t count)
 {
+    const struct body *const bodies = g->bodies;
     const double reach2 = (1 + skin) * (1 + skin);
-    const double x = g->bodies[i].x - g->image_x[stretch->image];
-    const double y = g->bodies[i].y - g->image_y[stretch->image];
-    const uint32_t from = stretch->first > i ? stretch->first : i + 1;
-    for (uint32_t j = from; j < stretch->last; j++) {
-        const double dx = x - g->bodies[j].x, dy = y - g->bodies[j].y;
-        if (dx * dx + dy * dy >= reach2 || g->pair_count == g->pair_max) continue;
-        g->pairs[g->pair_count++] = (struct pair){i, j | stretch->image << INDEX_BITS};
+    const double x = bodies[i].x - g->image_x[stretch.image];
+    const double y = bodies[i].y - g->image_y[stretch.image];
+    for (uint32_t j = stretch.first > i ? stretch.first : i + 1; j < stretch.last; j++) {
+        const double dx = x - bodies[j].x, dy = y - bodies[j].y;
+        pairs[count] = (struct pair){i, j | stretch.image << INDEX_BITS};
+        count += dx * dx + dy * dy < reach2;
+    }
+    return count;
+}
+
+static uint32_t keep_contacts(struct gas *g)
+{
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < g->pair_count && kept < g->count; k++) {
+        const struct pair p = g->pairs[k];
+        if (!(p.j >> 31)) continue;
+        const uint32_t a = g->place[p.i], b = g->place[p.j & ((1u << INDEX_BITS) - 1)];
+        g->kept[kept++] = a < b ? (struct pair){a, b} : (struct pair){b, a};
+    }
+    return kept;
+}
+
+static void carry_contacts(struct gas *g, uint32_t kept)
+{
+    for (uint32_t c = 0; c < kept; c++) {
+        const struct pair contact = g->kept[c];
+        for (uint32_t k = g->pair_first[contact.i]; k < g->pair_count; k++) {
+            if (g->pairs[k].i != contact.i) break;
+            if ((g->pairs[k].j & ((1u << INDEX_BITS) - 1)) == contact.j) g->pairs[k].j |= 1u << 31;
+        }
     }
 }
 
@@ -135,15 +165,25 @@ static void list_pairs(struct gas *g)
 {
     struct stretch near[9];
     sort_bodies(g);
-    g->pair_count = 0;
+    const uint32_t kept = keep_contacts(g);
+    uint32_t pairs = 0;
     g->travel = 0;
-    for (uint32_t cell = 0; cell < CELL_COUNT; cell++) {
-        if (g->cell_first[cell] == g->cell_first[cell + 1]) continue;
-        const uint32_t count = around(g, cell / CELLS, cell % CELLS, near);
-        for (uint32_t i = g->cell_first[cell]; i < g->cell_first[cell + 1]; i++) {
-            for (uint32_t r = 0; r < count; r++) list_body(g, i, &near[r]);
+    for (uint32_t cx = 0; cx < CELLS; cx++) {
+        for (uint32_t cy = 0; cy < CELLS; cy++) {
+            const uint32_t cell = cx * CELLS + cy;
+            if (g->cell_first[cell] == g->cell_first[cell + 1]) continue;
+            if (g->pair_max - pairs < CELL_PAIRS) break;
+            const uint32_t count = around(g, cx, cy, near);
+            for (uint32_t i = g->cell_first[cell]; i < g->cell_first[cell + 1]; i++) {
+                g->pair_first[i] = pairs;
+                for (uint32_t r = 0; r < count; r++) {
+                    pairs = list_body(g, i, near[r], g->pairs, pairs);
+                }
+            }
         }
     }
+    g->pair_count = pairs;
+    carry_contacts(g, kept);
     memset(&g->pairs[g->pair_count], 0, AHEAD * sizeof *g->pairs);
 }
 
@@ -190,10 +230,9 @@ CLONES static uint64_t press(struct window *w)
     return suspects;
 }
 
-static double move(struct gas *g, uint32_t first, uint32_t last, double kick)
+static void move(struct gas *g, uint32_t first, uint32_t last, double kick)
 {
     const double half = 0.5 * dt / mass;
-    double fastest = 0;
     for (uint32_t i = first; i < last; i++) {
         struct body *b = &g->bodies[i];
         struct half *h = &g->halves[i];
@@ -205,8 +244,18 @@ static double move(struct gas *g, uint32_t first, uint32_t last, double kick)
         b->uy = h->hy + half * p.y;
         b->x += dt * h->hx;
         b->y += dt * h->hy;
-        const double speed2 = h->hx * h->hx + h->hy * h->hy;
-        fastest = speed2 > fastest ? speed2 : fastest;
+    }
+}
+
+/* The largest speed squared.  As whole numbers, which have the same order and are compared many at
+ * once. */
+CLONES static uint64_t fastest_of(const struct half *halves, uint32_t count, uint64_t fastest)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        const double speed2 = halves[i].hx * halves[i].hx + halves[i].hy * halves[i].hy;
+        uint64_t bits;
+        memcpy(&bits, &speed2, sizeof bits);
+        fastest = bits > fastest ? bits : fastest;
     }
     return fastest;
 }
@@ -215,7 +264,7 @@ static void step(struct gas *g)
 {
     struct window w;
     const double kick = (g->steps > 0 ? dt : 0.5 * dt) / mass;
-    double fastest = 0;
+    uint64_t fastest = 0;
     uint32_t done = 0;
     if (2 * (g->travel + g->stride) >= skin) list_pairs(g);
     for (uint32_t k = 0; k < g->pair_count;) {
@@ -233,12 +282,16 @@ static void step(struct gas *g)
         }
         k += count;
         const uint32_t next = k < g->pair_count ? g->pairs[k].i : g->count;
-        fastest = fmax(fastest, move(g, done, next, kick));
+        move(g, done, next, kick);
+        fastest = fastest_of(g->halves + done, next - done, fastest);
         done = next;
     }
-    fastest = fmax(fastest, move(g, done, g->count, kick));
+    move(g, done, g->count, kick);
+    fastest = fastest_of(g->halves + done, g->count - done, fastest);
+    double speed2;
+    memcpy(&speed2, &fastest, sizeof speed2);
     g->steps++;
-    g->stride = dt * sqrt(fastest);
+    g->stride = dt * sqrt(speed2);
     g->travel += g->stride;
 }
 
@@ -248,7 +301,8 @@ static void gas_close(void *state)
 {
     struct gas *g = state;
     void *const arrays[] = {g->bodies, g->bodies_spare, g->halves, g->halves_spare, g->pushes,
-                            g->pairs, g->ids, g->ids_spare, g->cell_of};
+                            g->pairs, g->kept, g->ids, g->ids_spare, g->cell_of, g->place,
+                            g->pair_first};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) free(arrays[k]);
     free(g);
 }
@@ -275,18 +329,22 @@ static void *gas_open(const struct simulation *sim, double *bytes)
     g->halves_spare = calloc(n, sizeof *g->halves);
     g->pushes = calloc(n, sizeof *g->pushes);
     g->pairs = calloc(g->pair_max + AHEAD, sizeof *g->pairs);
+    g->kept = calloc(n, sizeof *g->kept);
     g->ids = calloc(n, sizeof *g->ids);
     g->ids_spare = calloc(n, sizeof *g->ids);
     g->cell_of = calloc(n, sizeof *g->cell_of);
+    g->place = calloc(n, sizeof *g->place);
+    g->pair_first = calloc(n, sizeof *g->pair_first);
     const bool done = g->bodies && g->bodies_spare && g->halves && g->halves_spare && g->pushes
-                   && g->pairs && g->ids && g->ids_spare && g->cell_of;
+                   && g->pairs && g->kept && g->ids && g->ids_spare && g->cell_of && g->place
+                   && g->pair_first;
     for (uint32_t k = 0; done && k < n; k++) {
         g->bodies[k] = (struct body){grains.x[k], grains.y[k], grains.vx[k], grains.vy[k]};
         g->halves[k] = (struct half){grains.vx[k], grains.vy[k]};
         g->ids[k] = grains.id[k];
     }
     *bytes = 2.0 * (sizeof(struct body) + sizeof(struct half)) + sizeof(struct push)
-           + PAIRS * sizeof(struct pair) + 3 * sizeof(uint32_t) + sizeof g->cell_first / (double)n;
+           + (PAIRS + 1) * sizeof(struct pair) + 5 * sizeof(uint32_t) + sizeof g->cell_first / (double)n;
     grains_free(&grains);
     if (done) {
         list_pairs(g);
@@ -303,10 +361,12 @@ static void gas_advance(void *state, double t_end)
     while (g->steps < target) step(g);
 }
 
-/* The largest distance of a grain from itself, in the nearest image. */
+/* The largest distance of a grain from itself, in the nearest image; another number of collisions
+ * is as bad as any distance. */
 static double gas_apart(const void *state, const struct simulation *sim)
 {
     const struct gas *g = state;
+    if (g->contacts != simulation_count(sim).collisions) return INFINITY;
     double *places = calloc(2 * (size_t)g->count, sizeof *places);
     for (uint32_t k = 0; places && k < g->count; k++) {
         places[2 * g->ids[k]] = g->bodies[k].x;
