@@ -186,8 +186,6 @@ static void push_cross(struct md *md, uint32_t t, struct md_window *w)
     struct strip_sums sums = {0};
     for (uint32_t k = strip->cross_first; k < strip->cross_last; k += WINDOW) {
         const uint32_t left = strip->cross_last - k, last = k + (left < WINDOW ? left : WINDOW);
-        memset(&md->cross_push[k - base], 0, (last - k) * sizeof *md->cross_push);
-        if (md->turns) memset(&md->cross_twist[k - base], 0, (last - k) * sizeof(double));
         md_pairs_window(md, k, last, w, &sums);
         for (uint32_t c = 0; c < w->count; c++) {
             md->cross_push[w->link[c] - base] = (struct push){w->fx[c], w->fy[c]};
@@ -197,11 +195,13 @@ static void push_cross(struct md *md, uint32_t t, struct md_window *w)
     md->sums[t] = sums;
 }
 
+/* Only those that touch have a force. */
 static void add_cross(struct md *md, uint32_t t, struct forces forces)
 {
     const struct strip *strip = &md->strips[t];
     const uint32_t base = md->link_count - md->cross_count;
     for (uint32_t k = strip->cross_first; k < strip->cross_last; k++) {
+        if (!(md->links[k].j & LINK_TOUCHES)) continue;
         const struct push *force = &md->cross_push[k - base];
         const uint32_t i = md->links[k].i;
         forces.pushes[i].fx += force->fx;
@@ -210,6 +210,7 @@ static void add_cross(struct md *md, uint32_t t, struct forces forces)
     }
     for (uint32_t in = strip->in_first; in < strip->in_last; in++) {
         const uint32_t k = md->incoming[in], j = md->links[k].j & LINK_INDEX;
+        if (!(md->links[k].j & LINK_TOUCHES)) continue;
         const struct push *force = &md->cross_push[k - base];
         forces.pushes[j].fx -= force->fx;
         forces.pushes[j].fy -= force->fy;
