@@ -223,7 +223,7 @@ static inline uint64_t lga_dice_key(struct lga_dice_source source)
 {
     return rng_keyed(source.seed, source.tick, source.row, source.stage);
 }
-uint64_t lga_dice_now(const struct lga *lga, uint32_t row, enum lga_stage stage);
+struct lga_dice_source lga_dice_now(const struct lga *lga, uint32_t row, enum lga_stage stage);
 enum lga_stage lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind);
 
 enum lga_simd lga_dice_simd(void);      /* the best of this machine */

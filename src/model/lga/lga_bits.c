@@ -15,6 +15,9 @@
 #include <assert.h>
 #include <omp.h>
 #include <string.h>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 #define KERNEL _base
 #define KERNEL_TARGET

@@ -41,6 +41,7 @@ struct lga_bits {
     uint8_t  *kinds;            /* a row of them for each band, while walls are drawn */
     uint64_t *real;             /* [word]: which bits of a row are its nodes; gmlg, heaps */
     uint64_t *rings;            /* rows after their collisions: [band][LGA_RING][plane][word] */
+    bool     *moving;           /* gmlg: which rows on their way hold movers, [band][row] */
     uint64_t *surplus;          /* sandpile: rest grains beyond the first, lowest bit first:
                                  * [row][digit][word] */
     uint32_t digits;            /* of those: two, three if a heap catches grains */
@@ -110,11 +111,13 @@ struct lga_row_survey {
     uint64_t *room, *full;
 };
 
+enum lga_holds { LGA_HOLDS_NOTHING, LGA_HOLDS_REST, LGA_HOLDS_MOVERS };
+
 struct lga_row_gmlg {
     uint32_t words, stride;
     unsigned effects;
     bool held;
-    uint64_t key[LGA_STAGES];
+    struct lga_dice_source source[LGA_STAGES];
     const struct lga_dice *dice;
     const uint64_t *in, *wall;
     const uint64_t *full[LGA_DIRECTIONS];       /* of the neighbours that are not above */
@@ -124,7 +127,7 @@ struct lga_row_gmlg {
 struct lga_row_admit {
     uint32_t words, stride;
     bool crowds;                /* there is only so much room */
-    uint64_t key;
+    struct lga_dice_source source;
     const struct lga_dice *dice;
     const uint64_t *wall, *real, *room;
     const uint64_t *own;
@@ -133,12 +136,12 @@ struct lga_row_admit {
 };
 
 struct lga_row_arrive {
-    uint32_t words, stride;
+    uint32_t words, stride, apart;      /* planes of `rest` lie so far apart */
     bool held, blocks;          /* some mover may be unable to leave */
-    uint64_t key;
+    struct lga_dice_source source;
     const struct lga_dice *dice;
     const uint64_t *wall, *sink;
-    const uint64_t *own, *own_admitted;
+    const uint64_t *own, *own_admitted, *rest;
     const uint64_t *admitted[LGA_DIRECTIONS];   /* was a mover let in where it goes? */
     uint64_t *out;
 };
@@ -156,7 +159,8 @@ struct lga_kernel {
     void (*fall)(const struct lga_row_fall *row);
     uint64_t (*stream_heap)(const struct lga_row_stream *row);
     void (*bind)(const struct lga_row_bind *row);
-    void (*survey)(const struct lga_row_survey *row);
+    enum lga_holds (*survey)(const struct lga_row_survey *row);
+    bool (*stirs)(const struct lga_row_gmlg *row);
     uint64_t (*gmlg_free)(const struct lga_row_gmlg *row);
     uint64_t (*gmlg_level)(const struct lga_row_gmlg *row);
     uint64_t (*gmlg_vertical)(const struct lga_row_gmlg *row);

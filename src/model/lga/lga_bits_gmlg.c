@@ -7,10 +7,14 @@
  * who is let in, and that before grains stream.  A row in its place is needed last by the survey,
  * three rows ahead of the streaming that overwrites it.  Bands of rows go to threads: each first
  * makes copies of the two rows below and above it, collided, while all rows are as they were.
+ *
+ * A row that holds no movers, and whose rest grains lie where none can start, passes by as it is:
+ * so what is empty or at rest costs little more than the survey.
  */
 #include "model/lga/lga_bits.h"
 
 #include <assert.h>
+#include <string.h>
 
 /* Planes of a row on its way: six directions, three bits of rest grains, three of room, full. */
 enum { PLANE_ROOM = LGA_GMLG_PLANES, PLANE_FULL = PLANE_ROOM + 3, PLANES };
@@ -19,10 +23,16 @@ enum { PLANE_ROOM = LGA_GMLG_PLANES, PLANE_FULL = PLANE_ROOM + 3, PLANES };
  * Then the admissions of three rows, six planes each. */
 enum { AT_ONCE = 4, HALO = 2, SLOTS = AT_ONCE + 2 * HALO, ADMITTED = 3 };
 
+/* Where the row of a node's neighbour in each direction lies. */
+static const int above[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
+
 struct band {
     const struct lga *lga;
     const struct lga_kernel *kernel;
     uint64_t *slots, *admitted;
+    bool     *moving, *coming;          /* of each of these: not all planes of movers are zero */
+    enum lga_holds holds[SLOTS];        /* what the row holds whose way begins here */
+    bool     still[SLOTS];              /* and it stays as it is */
     int64_t  first, rows;               /* of the lattice; in the band */
     uint64_t collisions, refused, gone;
 };
@@ -43,6 +53,7 @@ bool lga_bits_gmlg_allocate(struct lga *lga)
 {
     struct lga_bits *bits = lga->bits;
     return arena_array(&lga->arena, &bits->rings, bits->bands * band_words(bits))
+        && arena_array(&lga->arena, &bits->moving, (size_t)bits->bands * (SLOTS + ADMITTED))
         && lga_bits_allocate_real(lga);
 }
 
@@ -52,7 +63,9 @@ static struct band band_of(const struct lga *lga, const struct lga_kernel *kerne
     uint64_t *words = bits->rings + number * band_words(bits) + LGA_LANES;
     const int64_t first = lga_bits_band(lga, number);
     return (struct band){.lga = lga, .kernel = kernel, .slots = words,
-        .admitted = words + SLOTS * slot_words(bits), .first = first,
+        .admitted = words + SLOTS * slot_words(bits),
+        .moving = bits->moving + (size_t)number * (SLOTS + ADMITTED),
+        .coming = bits->moving + (size_t)number * (SLOTS + ADMITTED) + SLOTS, .first = first,
         .rows = (int64_t)lga_bits_band(lga, number + 1) - first};
 }
 
@@ -60,22 +73,40 @@ static struct band band_of(const struct lga *lga, const struct lga_kernel *kerne
 static uint32_t row_of(const struct band *band, int64_t k)
 {
     const int64_t rows = band->lga->lattice.rows;
-    return (uint32_t)(((band->first + k) % rows + rows) % rows);
+    int64_t row = band->first + k;
+    while (row < 0) row += rows;
+    while (row >= rows) row -= rows;
+    return (uint32_t)row;
 }
 
 /* The place where row k is kept on its way. */
-static uint64_t *slot(const struct band *band, int64_t k)
+static uint32_t place_of(const struct band *band, int64_t k)
 {
     const int64_t index = k < 0 ? AT_ONCE + HALO + k
                         : k >= band->rows ? AT_ONCE + HALO + (k - band->rows) : k % AT_ONCE;
     assert(index >= 0);
     assert(index < SLOTS);
-    return band->slots + (size_t)index * slot_words(band->lga->bits);
+    return (uint32_t)index;
 }
+
+static uint64_t *slot(const struct band *band, int64_t k)
+{
+    return band->slots + place_of(band, k) * slot_words(band->lga->bits);
+}
+
+/* The place of what row k lets in. */
+static uint32_t door_of(int64_t k) { return (uint32_t)(k + ADMITTED) % ADMITTED; }
 
 static uint64_t *admitted(const struct band *band, int64_t k)
 {
-    return band->admitted + (size_t)((k + ADMITTED) % ADMITTED) * admitted_words(band->lga->bits);
+    return band->admitted + door_of(k) * admitted_words(band->lga->bits);
+}
+
+/* Clears the planes of movers of a row on its way, unless they are clear. */
+static void clear(const struct lga_bits *bits, uint64_t *row, bool *moving)
+{
+    if (*moving) memset(row - LGA_LANES, 0, admitted_words(bits) * sizeof *row);
+    *moving = false;
 }
 
 static const uint64_t *sink_row(const struct lga_bits *bits, uint32_t row)
@@ -83,59 +114,78 @@ static const uint64_t *sink_row(const struct lga_bits *bits, uint32_t row)
     return bits->sink ? bits->sink + (size_t)row * bits->words : NULL;
 }
 
-static void survey(const struct band *band, uint32_t row, uint64_t *out)
+static enum lga_holds survey(const struct band *band, uint32_t row, uint64_t *out)
 {
     const struct lga *lga = band->lga;
     const struct lga_bits *bits = lga->bits;
-    band->kernel->survey(&(struct lga_row_survey){
+    const enum lga_holds holds = band->kernel->survey(&(struct lga_row_survey){
         .words = bits->words, .stride = bits->stride, .planes = lga_bits_row(lga, row),
         .wall = lga_bits_wall(lga, row), .sink = sink_row(bits, row),
         .room = out + PLANE_ROOM * bits->stride, .full = out + PLANE_FULL * bits->stride
     });
     lga_bits_join(lga, out + PLANE_FULL * bits->stride);
+    return holds;
 }
 
-/* `near` are the places of the row below, of the row itself and of the row above.  Its collisions
- * count, unless this is only a `copy`. */
-static uint64_t collide(const struct band *band, uint32_t row, bool copy,
-                        uint64_t *const near[3])
+static uint64_t collide_row(const struct lga_kernel *kernel, const struct lga *lga,
+                            const struct lga_row_gmlg *pass)
 {
-    static const int above[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
+    if (!lga->rule.gravity) return kernel->gmlg_free(pass);
+    if (lga->crowded) return kernel->gmlg_any(pass);
+    return lga->rule.vertical ? kernel->gmlg_vertical(pass) : kernel->gmlg_level(pass);
+}
+
+/* Row k; `near` are the places of the row below, of the row itself and of the row above.  Its
+ * collisions count, unless this is only a `copy`. */
+static uint64_t collide(struct band *band, int64_t k, bool copy, uint64_t *const near[3])
+{
     const struct lga *lga = band->lga;
     const struct lga_bits *bits = lga->bits;
+    const uint32_t row = row_of(band, k), place = place_of(band, k);
+    const bool gravity = lga->rule.gravity;
     struct lga_row_gmlg pass = {
         .words = bits->words, .stride = bits->stride, .held = lga->trapped, .dice = &lga->dice,
         .in = lga_bits_row(lga, row), .wall = lga_bits_wall(lga, row), .out = near[1],
         .hits = copy ? NULL : lga_rate_row(lga, row)
     };
-    const bool gravity = lga->rule.gravity, vertical = lga->rule.vertical;
-    for (int stage = 0; stage < LGA_STAGES; stage++) {
-        pass.key[stage] = lga_dice_now(lga, row, (enum lga_stage)stage);
-    }
     for (int d = 0; d < LGA_DIRECTIONS && gravity; d++) {
         pass.full[d] = near[1 + above[d]] + PLANE_FULL * bits->stride + lga_bits_shift(row, d);
     }
     if (gravity) pass.effects |= LGA_BITS_GRAVITY;
-    if (vertical) pass.effects |= LGA_BITS_VERTICAL;
+    if (lga->rule.vertical) pass.effects |= LGA_BITS_VERTICAL;
     if (!gravity || lga->crowded) pass.effects |= LGA_BITS_TIGHT;
-    const struct lga_kernel *kernel = band->kernel;
-    const uint64_t collisions = !gravity ? kernel->gmlg_free(&pass)
-        : lga->crowded ? kernel->gmlg_any(&pass)
-        : vertical ? kernel->gmlg_vertical(&pass) : kernel->gmlg_level(&pass);
+    band->still[place] = band->holds[place] == LGA_HOLDS_NOTHING
+        || (band->holds[place] == LGA_HOLDS_REST && !(gravity && band->kernel->stirs(&pass)));
+    if (band->still[place]) {
+        clear(bits, near[1], &band->moving[place]);
+        return 0;
+    }
+    for (int stage = 0; stage < LGA_STAGES; stage++) {
+        pass.source[stage] = lga_dice_now(lga, row, (enum lga_stage)stage);
+    }
+    const uint64_t collisions = collide_row(band->kernel, lga, &pass);
     for (uint32_t d = 0; d < LGA_DIRECTIONS; d++) lga_bits_join(lga, near[1] + d * bits->stride);
+    band->moving[place] = true;
     return collisions;
 }
 
-static uint64_t admit(const struct band *band, int64_t k)
+static uint64_t admit(struct band *band, int64_t k)
 {
-    static const int above[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
     const struct lga *lga = band->lga;
     const struct lga_bits *bits = lga->bits;
     const uint32_t row = row_of(band, k);
     uint64_t *out = admitted(band, k);
+    bool *coming = &band->coming[door_of(k)];
+    const bool *moving = band->moving;
+    if (!moving[place_of(band, k - 1)] && !moving[place_of(band, k)]
+        && !moving[place_of(band, k + 1)]) {
+        clear(bits, out, coming);
+        return 0;
+    }
+    *coming = true;
     struct lga_row_admit pass = {
         .words = bits->words, .stride = bits->stride, .crowds = lga->rule.gravity,
-        .key = lga_dice_now(lga, row, LGA_STAGE_ADMIT), .dice = &lga->dice,
+        .source = lga_dice_now(lga, row, LGA_STAGE_ADMIT), .dice = &lga->dice,
         .wall = lga_bits_wall(lga, row), .real = bits->real, .own = slot(band, k),
         .room = slot(band, k) + PLANE_ROOM * bits->stride, .out = out
     };
@@ -151,16 +201,20 @@ static uint64_t admit(const struct band *band, int64_t k)
 
 static uint64_t arrive(const struct band *band, int64_t k)
 {
-    static const int above[LGA_DIRECTIONS] = {0, 1, 1, 0, -1, -1};
     const struct lga *lga = band->lga;
     const struct lga_bits *bits = lga->bits;
     const uint32_t row = row_of(band, k);
+    const bool still = band->still[place_of(band, k)];
+    if (still && !band->coming[door_of(k)]) return 0;
+    uint64_t *own = slot(band, k), *out = lga_bits_row(lga, row);
     struct lga_row_arrive pass = {
         .words = bits->words, .stride = bits->stride, .held = lga->trapped,
         .blocks = lga->rule.gravity || bits->effects & LGA_BITS_WALLS,
-        .key = lga_dice_now(lga, row, LGA_STAGE_STOP), .dice = &lga->dice,
-        .wall = lga_bits_wall(lga, row), .sink = sink_row(bits, row), .own = slot(band, k),
-        .own_admitted = admitted(band, k), .out = lga_bits_row(lga, row)
+        .source = lga_dice_now(lga, row, LGA_STAGE_STOP), .dice = &lga->dice,
+        .wall = lga_bits_wall(lga, row), .sink = sink_row(bits, row), .own = own,
+        .own_admitted = admitted(band, k), .out = out,
+        .rest = still ? out + 6 * bits->words : own + 6 * bits->stride,
+        .apart = still ? bits->words : bits->stride
     };
     for (int d = 0; d < LGA_DIRECTIONS; d++) {
         pass.admitted[d] = admitted(band, k + above[d]) + (uint32_t)d * bits->stride
@@ -183,11 +237,13 @@ static void prepare_ends(struct band *band)
         place[2] = slot(band, starts[end] + 1);
         place[3] = band->slots + slot_words(band->lga->bits);
         for (int i = 0; i < HALO + 2; i++) {
-            survey(band, row_of(band, starts[end] - 1 + i), place[i]);
+            const int64_t k = starts[end] - 1 + i;
+            const enum lga_holds holds = survey(band, row_of(band, k), place[i]);
+            if (i > 0 && i <= HALO) band->holds[place_of(band, k)] = holds;
         }
         for (int i = 0; i < HALO; i++) {
             uint64_t *const near[3] = {place[i], place[i + 1], place[i + 2]};
-            collide(band, row_of(band, starts[end] + i), true, near);
+            collide(band, starts[end] + i, true, near);
         }
     }
 }
@@ -199,11 +255,12 @@ static void pass_band(struct band *band)
         for (; let_in <= k + 1; let_in++) {
             for (; collided <= let_in + 1 && collided < band->rows; collided++) {
                 for (; surveyed <= collided + 1 && surveyed < band->rows; surveyed++) {
-                    survey(band, row_of(band, surveyed), slot(band, surveyed));
+                    band->holds[place_of(band, surveyed)] = survey(band, row_of(band, surveyed),
+                                                                   slot(band, surveyed));
                 }
                 uint64_t *const near[3] = {slot(band, collided - 1), slot(band, collided),
                                            slot(band, collided + 1)};
-                band->collisions += collide(band, row_of(band, collided), false, near);
+                band->collisions += collide(band, collided, false, near);
             }
             const uint64_t refused = admit(band, let_in);
             if (let_in >= 0 && let_in < band->rows) band->refused += refused;

@@ -88,11 +88,10 @@ uint32_t lga_dice_words(uint32_t columns)
     return (columns + 64 * LGA_LANES - 1) / (64 * LGA_LANES) * LGA_LANES;
 }
 
-uint64_t lga_dice_now(const struct lga *lga, uint32_t row, enum lga_stage stage)
+struct lga_dice_source lga_dice_now(const struct lga *lga, uint32_t row, enum lga_stage stage)
 {
     const bool frozen = stage == LGA_STAGE_FRICTION && lga->rule.frozen;
-    return lga_dice_key((struct lga_dice_source){lga->seed, frozen ? UINT64_MAX - 2 : lga->ticks,
-                                                 row, stage});
+    return (struct lga_dice_source){lga->seed, frozen ? UINT64_MAX - 2 : lga->ticks, row, stage};
 }
 
 enum lga_stage lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind)

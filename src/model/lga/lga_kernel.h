@@ -24,6 +24,41 @@ typedef uint64_t N(loose) __attribute__((vector_size(8 * KERNEL_WIDTH), may_alia
 INLINE vec N(load)(const uint64_t *words) { return *(const N(loose) *)words; }
 INLINE void N(store)(uint64_t *words, vec bits) { *(vec *)words = bits; }
 
+/* Three operands that AVX-512 joins in one instruction, whose table of outcomes is the constant. */
+#if KERNEL_WIDTH == 8
+#define TERNARY(a, b, c, table) \
+    (vec)_mm512_ternarylogic_epi64((__m512i)(a), (__m512i)(b), (__m512i)(c), table)
+#endif
+
+/* Where `which` is set the bit of yes, elsewhere that of no. */
+INLINE vec N(either)(vec which, vec yes, vec no)
+{
+#ifdef TERNARY
+    return TERNARY(which, yes, no, 0xca);
+#else
+    return no ^ (which & (yes ^ no));
+#endif
+}
+
+/* The two bits of a + b + c: is it odd, is it two or more? */
+INLINE vec N(odd)(vec a, vec b, vec c)
+{
+#ifdef TERNARY
+    return TERNARY(a, b, c, 0x96);
+#else
+    return a ^ b ^ c;
+#endif
+}
+
+INLINE vec N(most)(vec a, vec b, vec c)
+{
+#ifdef TERNARY
+    return TERNARY(a, b, c, 0xe8);
+#else
+    return (a & b) | (c & (a | b));
+#endif
+}
+
 /* xoshiro256++ of Blackman and Vigna (2018), a stream for each word of a block. */
 struct N(stream) { vec a[PARTS], b[PARTS], c[PARTS], d[PARTS]; };
 
@@ -79,6 +114,36 @@ INLINE void N(roll)(struct N(stream) *s, struct lga_die die, vec out[PARTS])
     }
 }
 
+/* The same for one vector of a block. */
+INLINE vec N(draw)(struct N(stream) *s, int p, struct lga_die die)
+{
+    vec out = (vec){0} | (die.bits == 0 && die.threshold ? UINT64_MAX : 0);
+    for (int k = 0; k < die.bits; k++) {
+        const vec digit = (vec){0} | -(uint64_t)(die.threshold >> k & 1);
+        out = N(most)(out, N(next)(s, p), digit);       /* "or" where it is set, else "and" */
+    }
+    return out;
+}
+
+/* Dice that few blocks of a row need: their stream is followed no farther than to the last block
+ * that asks, and not at all if none does. */
+struct N(late) { struct N(stream) s; uint32_t next; };
+
+/* Are the dice of a block still to be rolled?  Then the stream is brought to where they are; the
+ * dice of a block take `words` of it. */
+INLINE bool N(reach)(struct N(late) *late, uint32_t block, struct lga_dice_source source, int words)
+{
+    if (late->next > block) return false;
+    if (late->next == 0) N(seed)(&late->s, lga_dice_key(source));
+    for (; late->next < block; late->next += LGA_LANES) {
+        for (int k = 0; k < words; k++) {
+            for (int p = 0; p < PARTS; p++) N(next)(&late->s, p);
+        }
+    }
+    late->next = block + LGA_LANES;
+    return true;
+}
+
 KERNEL_TARGET static void N(roll_row)(const struct lga_dice *dice, uint64_t key, uint32_t words,
                                       uint64_t *const rows[LGA_DICE])
 {
@@ -105,9 +170,13 @@ INLINE uint64_t N(count)(vec bits)
 
 INLINE bool N(any)(vec bits)
 {
+#ifdef TERNARY
+    return _mm512_test_epi64_mask((__m512i)bits, (__m512i)bits) != 0;
+#else
     uint64_t sum = 0;
     for (int k = 0; k < KERNEL_WIDTH; k++) sum |= bits[k];
     return sum != 0;
+#endif
 }
 
 /* Counts the collisions of a vector of nodes: adds a bit to the number of each, up to the last. */
@@ -265,7 +334,9 @@ KERNEL_TARGET static void N(stream_free)(uint64_t *out, uint32_t words,
     }
 }
 
+#include "model/lga/lga_kernel_choice.h"
 #include "model/lga/lga_kernel_gmlg.h"
+#include "model/lga/lga_kernel_room.h"
 #include "model/lga/lga_kernel_sand.h"
 
 #define INSTANCE(kind, e) \
@@ -306,10 +377,12 @@ static const struct lga_kernel N(kernel) = {
      N(collide_4), N(collide_5), N(collide_6), N(collide_7)},
     N(collide_any), N(stream_free), N(stream_8), N(stream_any),
     N(stop), N(fall_row), N(stream_heap), N(bind),
-    N(survey), N(gmlg_free), N(gmlg_level), N(gmlg_vertical), N(gmlg_any), N(admit), N(arrive)
+    N(survey), N(stirs), N(gmlg_free), N(gmlg_level), N(gmlg_vertical), N(gmlg_any), N(admit),
+    N(arrive)
 };
 
 #undef INSTANCE
+#undef TERNARY
 #undef vec
 #undef INLINE
 #undef PARTS

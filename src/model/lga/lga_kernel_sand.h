@@ -1,5 +1,5 @@
 /* lga_kernel_sand.h - the sandpile's own stages as logic on vectors of nodes: part of lga_kernel.h,
- * behind the gmlg, with which it shares small numbers and fair choices.
+ * behind the gmlg, with which it shares how a mover bends.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -97,12 +97,10 @@ KERNEL_TARGET static void N(fall_row)(const struct lga_row_fall *row)
             m[5] |= goes_right;
             if (row->fly) {
                 const struct N(pick) dice = {third[p], fifth[p], coin[p], second[p]};
-                vec count[3] = {{0}}, from[6], full[6] = {{0}};
+                vec from[6], full[6] = {{0}};
                 full[4] = wall[0] | N(load)(row->rest_left + w);
                 full[5] = wall[1] | N(load)(row->rest_right + w);
-                for (int d = 0; d < 6; d++) N(add_bit)(count, m[d]);
-                N(choose)(m, count, dice, from);
-                for (int d = 0; d < 6; d++) from[d] &= bend[p];
+                N(choose)(m, bend[p], dice, from);
                 N(bend_level)(m, from, full, bend_left[p]);
             }
             for (uint32_t d = 0; d < 6; d++) N(store)(row->out + d * row->stride + w, m[d]);
