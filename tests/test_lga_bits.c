@@ -278,6 +278,10 @@ static void test_dice_fall_as_often_as_they_should(void **unused)
         CHECK_NEAR(sum / n, p, 4 * sqrt(p * (1 - p) / n) + 1e-3 * least);
     }
     CHECK(lga_dice_die(0.5).bits == 1);
+    CHECK(lga_dice_die(1 / 3.0).threshold == LGA_CUT_THIRD);
+    CHECK(lga_dice_die(1 / 3.0).bits == LGA_CUT_BITS);
+    CHECK(lga_dice_die(1 / 5.0).threshold == LGA_CUT_FIFTH);
+    CHECK(lga_dice_die(1 / 5.0).bits == LGA_CUT_BITS);
     CHECK(lga_dice_die(0).bits == 0 && lga_dice_die(0).threshold == 0);
     CHECK(lga_dice_die(1).bits == 0 && lga_dice_die(1).threshold == 1);
 }

@@ -104,6 +104,9 @@ enum lga_stage {
 struct lga_die { uint32_t threshold; int bits; };
 struct lga_dice { struct lga_die of[LGA_DICE]; };
 
+/* What becomes of 1/3 and of 1/5: thresholds out of 2^LGA_CUT_BITS. */
+enum { LGA_CUT_THIRD = 341, LGA_CUT_FIFTH = 205, LGA_CUT_BITS = 10 };
+
 /* Random words come in blocks of LGA_LANES: as many streams run beside each other. */
 enum { LGA_LANES = 8 };
 

@@ -33,6 +33,7 @@ enum { LGA_GMLG_PLANES = 9 };
 struct lga_bits {
     uint32_t words, stride;     /* of a plane of the state; of a row with a margin on each side */
     uint32_t last_word, last_bit;   /* of a row: where its last column is */
+    uint32_t copy_word, copy_bit;   /* and where the one behind it is, a copy of the first */
     uint32_t depth;             /* planes of a row */
     uint32_t bands;             /* rows are shared out in so many parts */
     uint64_t *planes;           /* [row][plane][word] */
@@ -117,7 +118,7 @@ struct lga_row_gmlg {
     uint32_t words, stride;
     unsigned effects;
     bool held;
-    struct lga_dice_source source[LGA_STAGES];
+    struct lga_dice_source source, ways, friction;
     const struct lga_dice *dice;
     const uint64_t *in, *wall;
     const uint64_t *full[LGA_DIRECTIONS];       /* of the neighbours that are not above */
@@ -198,6 +199,7 @@ uint64_t *lga_bits_wall(const struct lga *lga, uint32_t row);   /* with margins 
 uint64_t *lga_bits_heap(const struct lga *lga, uint32_t row);   /* the same */
 bool lga_bits_allocate_real(struct lga *lga);
 void lga_bits_join(const struct lga *lga, uint64_t *row);       /* fills the margins of a row */
+void lga_bits_join_planes(const struct lga *lga, uint64_t *row, uint32_t count);
 void lga_bits_set(struct lga *lga, uint32_t site, unsigned moving, unsigned rest);
 
 /* How many grains of a row fly in each direction, and how many rest. */

@@ -160,11 +160,11 @@ static uint64_t collide(struct band *band, int64_t k, bool copy, uint64_t *const
         clear(bits, near[1], &band->moving[place]);
         return 0;
     }
-    for (int stage = 0; stage < LGA_STAGES; stage++) {
-        pass.source[stage] = lga_dice_now(lga, row, (enum lga_stage)stage);
-    }
+    pass.source = lga_dice_now(lga, row, LGA_STAGE_COLLIDE);
+    pass.ways = lga_dice_now(lga, row, LGA_STAGE_WAYS);
+    pass.friction = lga_dice_now(lga, row, LGA_STAGE_FRICTION);
     const uint64_t collisions = collide_row(band->kernel, lga, &pass);
-    for (uint32_t d = 0; d < LGA_DIRECTIONS; d++) lga_bits_join(lga, near[1] + d * bits->stride);
+    lga_bits_join_planes(lga, near[1], LGA_DIRECTIONS);
     band->moving[place] = true;
     return collisions;
 }
@@ -195,7 +195,7 @@ static uint64_t admit(struct band *band, int64_t k)
                      + lga_bits_shift(row, back);
     }
     const uint64_t refused = band->kernel->admit(&pass);
-    for (uint32_t d = 0; d < LGA_DIRECTIONS; d++) lga_bits_join(lga, out + d * bits->stride);
+    lga_bits_join_planes(lga, out, LGA_DIRECTIONS);
     return refused;
 }
 

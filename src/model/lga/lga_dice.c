@@ -33,8 +33,8 @@ struct lga_die lga_dice_die(double probability)
 /* One of up to six, all alike. */
 static void set_pick(struct lga_dice *dice)
 {
-    dice->of[LGA_DIE_PICK_THIRD] = lga_dice_die(1 / 3.0);
-    dice->of[LGA_DIE_PICK_FIFTH] = lga_dice_die(1 / 5.0);
+    dice->of[LGA_DIE_PICK_THIRD] = (struct lga_die){LGA_CUT_THIRD, LGA_CUT_BITS};
+    dice->of[LGA_DIE_PICK_FIFTH] = (struct lga_die){LGA_CUT_FIFTH, LGA_CUT_BITS};
     dice->of[LGA_DIE_PICK_COIN] = dice->of[LGA_DIE_PICK_SECOND] = lga_dice_die(0.5);
 }
 

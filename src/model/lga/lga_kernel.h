@@ -66,7 +66,8 @@ struct N(stream) { vec a[PARTS], b[PARTS], c[PARTS], d[PARTS]; };
 INLINE vec N(mixed)(uint64_t key, uint32_t first)
 {
     vec z;
-    for (uint32_t l = 0; l < KERNEL_WIDTH; l++) z[l] = key + (first + l + 1) * 0x9e3779b97f4a7c15u;
+    for (uint32_t l = 0; l < KERNEL_WIDTH; l++) z[l] = (first + l + 1) * 0x9e3779b97f4a7c15u;
+    z += key;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
@@ -121,6 +122,18 @@ INLINE vec N(draw)(struct N(stream) *s, int p, struct lga_die die)
     for (int k = 0; k < die.bits; k++) {
         const vec digit = (vec){0} | -(uint64_t)(die.threshold >> k & 1);
         out = N(most)(out, N(next)(s, p), digit);       /* "or" where it is set, else "and" */
+    }
+    return out;
+}
+
+/* Of a die that is known when this is compiled, 1 of 3 or 1 of 5. */
+INLINE vec N(draw_known)(struct N(stream) *s, int p, uint32_t threshold)
+{
+    vec out = {0};
+    #pragma GCC unroll 10
+    for (int k = 0; k < LGA_CUT_BITS; k++) {
+        const vec word = N(next)(s, p);
+        out = threshold >> k & 1 ? out | word : out & word;
     }
     return out;
 }

@@ -132,7 +132,7 @@ INLINE vec N(collide_gmlg)(const struct lga_row_gmlg *row, struct N(late) *ways,
     }
     const struct lga_die third = row->dice->of[LGA_DIE_WAY_THIRD];
     const struct lga_die coin = row->dice->of[LGA_DIE_WAY_SIDE];
-    if (N(reach)(ways, block, row->source[LGA_STAGE_WAYS], third.bits + coin.bits)) {
+    if (N(reach)(ways, block, row->ways, third.bits + coin.bits)) {
         N(roll)(&ways->s, third, way[0]);
         N(roll)(&ways->s, coin, way[1]);
     }
@@ -204,8 +204,8 @@ INLINE void N(fall_gmlg)(const struct lga_row_gmlg *row, struct N(stream) *s,
     const vec bends = N(draw)(s, p, of[LGA_DIE_BEND]);
     const vec bends_left = N(draw)(s, p, of[LGA_DIE_BEND_SIDE]);
     struct N(pick) dice;
-    dice.third = N(draw)(s, p, of[LGA_DIE_PICK_THIRD]);
-    dice.fifth = N(draw)(s, p, of[LGA_DIE_PICK_FIFTH]);
+    dice.third = N(draw_known)(s, p, LGA_CUT_THIRD);
+    dice.fifth = N(draw_known)(s, p, LGA_CUT_FIFTH);
     dice.coin = N(draw)(s, p, of[LGA_DIE_PICK_COIN]);
     dice.second = N(draw)(s, p, of[LGA_DIE_PICK_SECOND]);
     const vec kept_left = N(draw)(friction, p, of[LGA_DIE_FRICTION_LEFT]) & ~had_movers;
@@ -230,11 +230,9 @@ INLINE uint64_t N(gmlg_effects)(const struct lga_row_gmlg *row, unsigned effects
     struct N(late) ways = {.next = 0};
     struct N(stream) s, friction;
     vec way[2][PARTS] = {{{0}}};
-    N(seed)(&s, lga_dice_key(row->source[LGA_STAGE_COLLIDE]));
+    N(seed)(&s, lga_dice_key(row->source));
     friction = s;
-    if (of[LGA_DIE_FRICTION_LEFT].bits) {
-        N(seed)(&friction, lga_dice_key(row->source[LGA_STAGE_FRICTION]));
-    }
+    if (of[LGA_DIE_FRICTION_LEFT].bits) N(seed)(&friction, lga_dice_key(row->friction));
     for (uint32_t block = 0; block < words; block += LGA_LANES) {
         for (int p = 0; p < PARTS; p++) {
             const uint32_t w = block + (uint32_t)p * KERNEL_WIDTH;
