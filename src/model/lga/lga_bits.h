@@ -129,7 +129,6 @@ struct lga_row_admit {
     uint32_t words, stride;
     bool crowds;                /* there is only so much room */
     struct lga_dice_source source;
-    const struct lga_dice *dice;
     const uint64_t *wall, *real, *room;
     const uint64_t *own;
     const uint64_t *from[LGA_DIRECTIONS];       /* where the movers of a direction come from */

@@ -34,6 +34,12 @@ struct band {
     enum lga_holds holds[SLOTS];        /* what the row holds whose way begins here */
     bool     still[SLOTS];              /* and it stays as it is */
     int64_t  first, rows;               /* of the lattice; in the band */
+    ptrdiff_t aside[2][LGA_DIRECTIONS]; /* columns to a neighbour, in even and odd rows */
+    uint64_t (*collide)(const struct lga_row_gmlg *row);
+    struct lga_row_survey surveying;    /* of each pass what is the same for all rows */
+    struct lga_row_gmlg   colliding;
+    struct lga_row_admit  admitting;
+    struct lga_row_arrive arriving;
     uint64_t collisions, refused, gone;
 };
 
@@ -57,16 +63,47 @@ bool lga_bits_gmlg_allocate(struct lga *lga)
         && lga_bits_allocate_real(lga);
 }
 
+/* Which form of the collisions fits, and what it is told. */
+static void choose_collisions(struct band *band)
+{
+    const struct lga *lga = band->lga;
+    const struct lga_kernel *kernel = band->kernel;
+    const bool gravity = lga->rule.gravity, vertical = lga->rule.vertical;
+    unsigned *effects = &band->colliding.effects;
+    if (gravity) *effects |= LGA_BITS_GRAVITY;
+    if (vertical) *effects |= LGA_BITS_VERTICAL;
+    if (!gravity || lga->crowded) *effects |= LGA_BITS_TIGHT;
+    band->collide = !gravity ? kernel->gmlg_free : lga->crowded ? kernel->gmlg_any
+                  : vertical ? kernel->gmlg_vertical : kernel->gmlg_level;
+}
+
 static struct band band_of(const struct lga *lga, const struct lga_kernel *kernel, uint32_t number)
 {
     const struct lga_bits *bits = lga->bits;
-    uint64_t *words = bits->rings + number * band_words(bits) + LGA_LANES;
+    const uint32_t words = bits->words, stride = bits->stride;
+    uint64_t *slots = bits->rings + number * band_words(bits) + LGA_LANES;
+    bool *moving = bits->moving + (size_t)number * (SLOTS + ADMITTED);
     const int64_t first = lga_bits_band(lga, number);
-    return (struct band){.lga = lga, .kernel = kernel, .slots = words,
-        .admitted = words + SLOTS * slot_words(bits),
-        .moving = bits->moving + (size_t)number * (SLOTS + ADMITTED),
-        .coming = bits->moving + (size_t)number * (SLOTS + ADMITTED) + SLOTS, .first = first,
-        .rows = (int64_t)lga_bits_band(lga, number + 1) - first};
+    struct band band = {
+        .lga = lga, .kernel = kernel, .slots = slots,
+        .admitted = slots + SLOTS * slot_words(bits), .moving = moving, .coming = moving + SLOTS,
+        .first = first, .rows = (int64_t)lga_bits_band(lga, number + 1) - first,
+        .surveying = {.words = words, .stride = stride},
+        .colliding = {.words = words, .stride = stride, .held = lga->trapped, .dice = &lga->dice,
+                      .source = lga_dice_now(lga, 0, LGA_STAGE_COLLIDE),
+                      .ways = lga_dice_now(lga, 0, LGA_STAGE_WAYS),
+                      .friction = lga_dice_now(lga, 0, LGA_STAGE_FRICTION)},
+        .admitting = {.words = words, .stride = stride, .crowds = lga->rule.gravity,
+                      .source = lga_dice_now(lga, 0, LGA_STAGE_ADMIT), .real = bits->real},
+        .arriving = {.words = words, .stride = stride, .held = lga->trapped,
+                     .blocks = lga->rule.gravity || bits->effects & LGA_BITS_WALLS,
+                     .source = lga_dice_now(lga, 0, LGA_STAGE_STOP), .dice = &lga->dice}
+    };
+    for (uint32_t k = 0; k < 2; k++) {
+        for (int d = 0; d < LGA_DIRECTIONS; d++) band.aside[k][d] = lga_bits_shift(k, d);
+    }
+    choose_collisions(&band);
+    return band;
 }
 
 /* Row k of a band, -2 .. rows + 1, as a row of the lattice. */
@@ -114,25 +151,19 @@ static const uint64_t *sink_row(const struct lga_bits *bits, uint32_t row)
     return bits->sink ? bits->sink + (size_t)row * bits->words : NULL;
 }
 
-static enum lga_holds survey(const struct band *band, uint32_t row, uint64_t *out)
+static enum lga_holds survey(struct band *band, uint32_t row, uint64_t *out)
 {
     const struct lga *lga = band->lga;
     const struct lga_bits *bits = lga->bits;
-    const enum lga_holds holds = band->kernel->survey(&(struct lga_row_survey){
-        .words = bits->words, .stride = bits->stride, .planes = lga_bits_row(lga, row),
-        .wall = lga_bits_wall(lga, row), .sink = sink_row(bits, row),
-        .room = out + PLANE_ROOM * bits->stride, .full = out + PLANE_FULL * bits->stride
-    });
-    lga_bits_join(lga, out + PLANE_FULL * bits->stride);
+    struct lga_row_survey *pass = &band->surveying;
+    pass->planes = lga_bits_row(lga, row);
+    pass->wall = lga_bits_wall(lga, row);
+    pass->sink = sink_row(bits, row);
+    pass->room = out + PLANE_ROOM * bits->stride;
+    pass->full = out + PLANE_FULL * bits->stride;
+    const enum lga_holds holds = band->kernel->survey(pass);
+    lga_bits_join(lga, pass->full);
     return holds;
-}
-
-static uint64_t collide_row(const struct lga_kernel *kernel, const struct lga *lga,
-                            const struct lga_row_gmlg *pass)
-{
-    if (!lga->rule.gravity) return kernel->gmlg_free(pass);
-    if (lga->crowded) return kernel->gmlg_any(pass);
-    return lga->rule.vertical ? kernel->gmlg_vertical(pass) : kernel->gmlg_level(pass);
 }
 
 /* Row k; `near` are the places of the row below, of the row itself and of the row above.  Its
@@ -143,27 +174,22 @@ static uint64_t collide(struct band *band, int64_t k, bool copy, uint64_t *const
     const struct lga_bits *bits = lga->bits;
     const uint32_t row = row_of(band, k), place = place_of(band, k);
     const bool gravity = lga->rule.gravity;
-    struct lga_row_gmlg pass = {
-        .words = bits->words, .stride = bits->stride, .held = lga->trapped, .dice = &lga->dice,
-        .in = lga_bits_row(lga, row), .wall = lga_bits_wall(lga, row), .out = near[1],
-        .hits = copy ? NULL : lga_rate_row(lga, row)
-    };
-    for (int d = 0; d < LGA_DIRECTIONS && gravity; d++) {
-        pass.full[d] = near[1 + above[d]] + PLANE_FULL * bits->stride + lga_bits_shift(row, d);
+    struct lga_row_gmlg *pass = &band->colliding;
+    pass->in = lga_bits_row(lga, row);
+    pass->wall = lga_bits_wall(lga, row);
+    for (int d = 0; d < LGA_DIRECTIONS; d++) {
+        pass->full[d] = near[1 + above[d]] + PLANE_FULL * bits->stride + band->aside[row & 1][d];
     }
-    if (gravity) pass.effects |= LGA_BITS_GRAVITY;
-    if (lga->rule.vertical) pass.effects |= LGA_BITS_VERTICAL;
-    if (!gravity || lga->crowded) pass.effects |= LGA_BITS_TIGHT;
     band->still[place] = band->holds[place] == LGA_HOLDS_NOTHING
-        || (band->holds[place] == LGA_HOLDS_REST && !(gravity && band->kernel->stirs(&pass)));
+        || (band->holds[place] == LGA_HOLDS_REST && !(gravity && band->kernel->stirs(pass)));
     if (band->still[place]) {
         clear(bits, near[1], &band->moving[place]);
         return 0;
     }
-    pass.source = lga_dice_now(lga, row, LGA_STAGE_COLLIDE);
-    pass.ways = lga_dice_now(lga, row, LGA_STAGE_WAYS);
-    pass.friction = lga_dice_now(lga, row, LGA_STAGE_FRICTION);
-    const uint64_t collisions = collide_row(band->kernel, lga, &pass);
+    pass->source.row = pass->ways.row = pass->friction.row = row;
+    pass->out = near[1];
+    pass->hits = copy ? NULL : lga_rate_row(lga, row);
+    const uint64_t collisions = band->collide(pass);
     lga_bits_join_planes(lga, near[1], LGA_DIRECTIONS);
     band->moving[place] = true;
     return collisions;
@@ -171,56 +197,56 @@ static uint64_t collide(struct band *band, int64_t k, bool copy, uint64_t *const
 
 static uint64_t admit(struct band *band, int64_t k)
 {
-    const struct lga *lga = band->lga;
-    const struct lga_bits *bits = lga->bits;
-    const uint32_t row = row_of(band, k);
-    uint64_t *out = admitted(band, k);
+    const struct lga_bits *bits = band->lga->bits;
+    const uint32_t row = row_of(band, k), places[3] = {place_of(band, k - 1), place_of(band, k),
+                                                       place_of(band, k + 1)};
+    uint64_t *out = admitted(band, k), *own = slot(band, k);
     bool *coming = &band->coming[door_of(k)];
     const bool *moving = band->moving;
-    if (!moving[place_of(band, k - 1)] && !moving[place_of(band, k)]
-        && !moving[place_of(band, k + 1)]) {
+    if (!moving[places[0]] && !moving[places[1]] && !moving[places[2]]) {
         clear(bits, out, coming);
         return 0;
     }
     *coming = true;
-    struct lga_row_admit pass = {
-        .words = bits->words, .stride = bits->stride, .crowds = lga->rule.gravity,
-        .source = lga_dice_now(lga, row, LGA_STAGE_ADMIT), .dice = &lga->dice,
-        .wall = lga_bits_wall(lga, row), .real = bits->real, .own = slot(band, k),
-        .room = slot(band, k) + PLANE_ROOM * bits->stride, .out = out
-    };
+    struct lga_row_admit *pass = &band->admitting;
+    pass->source.row = row;
+    pass->wall = lga_bits_wall(band->lga, row);
+    pass->own = own;
+    pass->room = own + PLANE_ROOM * bits->stride;
+    pass->out = out;
     for (int d = 0; d < LGA_DIRECTIONS; d++) {
         const int back = (d + 3) % LGA_DIRECTIONS;
-        pass.from[d] = slot(band, k + above[back]) + (uint32_t)d * bits->stride
-                     + lga_bits_shift(row, back);
+        pass->from[d] = band->slots + places[1 + above[back]] * slot_words(bits)
+                      + (uint32_t)d * bits->stride + band->aside[row & 1][back];
     }
-    const uint64_t refused = band->kernel->admit(&pass);
-    lga_bits_join_planes(lga, out, LGA_DIRECTIONS);
+    const uint64_t refused = band->kernel->admit(pass);
+    lga_bits_join_planes(band->lga, out, LGA_DIRECTIONS);
     return refused;
 }
 
-static uint64_t arrive(const struct band *band, int64_t k)
+static uint64_t arrive(struct band *band, int64_t k)
 {
     const struct lga *lga = band->lga;
     const struct lga_bits *bits = lga->bits;
-    const uint32_t row = row_of(band, k);
     const bool still = band->still[place_of(band, k)];
     if (still && !band->coming[door_of(k)]) return 0;
-    uint64_t *own = slot(band, k), *out = lga_bits_row(lga, row);
-    struct lga_row_arrive pass = {
-        .words = bits->words, .stride = bits->stride, .held = lga->trapped,
-        .blocks = lga->rule.gravity || bits->effects & LGA_BITS_WALLS,
-        .source = lga_dice_now(lga, row, LGA_STAGE_STOP), .dice = &lga->dice,
-        .wall = lga_bits_wall(lga, row), .sink = sink_row(bits, row), .own = own,
-        .own_admitted = admitted(band, k), .out = out,
-        .rest = still ? out + 6 * bits->words : own + 6 * bits->stride,
-        .apart = still ? bits->words : bits->stride
-    };
+    const uint32_t row = row_of(band, k);
+    const uint64_t *const doors[3] = {admitted(band, k - 1), admitted(band, k),
+                                      admitted(band, k + 1)};
+    struct lga_row_arrive *pass = &band->arriving;
+    pass->source.row = row;
+    pass->wall = lga_bits_wall(lga, row);
+    pass->sink = sink_row(bits, row);
+    pass->own = slot(band, k);
+    pass->own_admitted = doors[1];
+    pass->out = lga_bits_row(lga, row);
+    pass->rest = still ? pass->out + 6 * bits->words : pass->own + 6 * bits->stride;
+    pass->apart = still ? bits->words : bits->stride;
     for (int d = 0; d < LGA_DIRECTIONS; d++) {
-        pass.admitted[d] = admitted(band, k + above[d]) + (uint32_t)d * bits->stride
-                         + lga_bits_shift(row, d);
+        pass->admitted[d] = doors[1 + above[d]] + (uint32_t)d * bits->stride
+                          + band->aside[row & 1][d];
     }
-    const uint64_t gone = band->kernel->arrive(&pass);
+    const uint64_t gone = band->kernel->arrive(pass);
     lga_bits_trim(lga, row);
     return gone;
 }

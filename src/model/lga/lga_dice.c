@@ -56,8 +56,8 @@ static struct lga_dice dice_of_gmlg(const struct lga_rule *rule)
     dice.of[LGA_DIE_FRICTION_LEFT] = lga_dice_die(rule->friction);
     dice.of[LGA_DIE_FRICTION_RIGHT] = lga_dice_die(rule->friction);
     set_pick(&dice);
-    dice.of[LGA_DIE_ADMIT_THIRD] = lga_dice_die(1 / 3.0);
-    dice.of[LGA_DIE_ADMIT_FIFTH] = lga_dice_die(1 / 5.0);
+    dice.of[LGA_DIE_ADMIT_THIRD] = dice.of[LGA_DIE_PICK_THIRD];
+    dice.of[LGA_DIE_ADMIT_FIFTH] = dice.of[LGA_DIE_PICK_FIFTH];
     for (int k = 0; k < 6; k++) dice.of[LGA_DIE_ADMIT_COIN + k] = lga_dice_die(0.5);
     return dice;
 }

@@ -92,17 +92,17 @@ INLINE uint64_t N(refuse)(const struct lga_row_admit *row, struct N(late) *late,
                           vec arriving[6])
 {
     const uint32_t w = block + (uint32_t)p * KERNEL_WIDTH;
-    const struct lga_die *of = row->dice->of;
     const struct N(tally) came = N(tallied)(waiting);
     vec room[3], out[6];
     for (uint32_t k = 0; k < 3; k++) room[k] = N(load)(row->room + k * row->stride + w);
     const vec crowded = N(exceeds)(came.all, room);
     if (!N(any)(crowded)) return 0;
-    if (N(reach)(late, block, row->source, of[LGA_DIE_ADMIT_THIRD].bits
-                 + of[LGA_DIE_ADMIT_FIFTH].bits + 6 * of[LGA_DIE_ADMIT_COIN].bits)) {
-        N(roll)(&late->s, of[LGA_DIE_ADMIT_THIRD], dice->third);
-        N(roll)(&late->s, of[LGA_DIE_ADMIT_FIFTH], dice->fifth);
-        for (int k = 0; k < 6; k++) N(roll)(&late->s, of[LGA_DIE_ADMIT_COIN + k], dice->coin[k]);
+    if (N(reach)(late, block, row->source, 2 * LGA_CUT_BITS + 6)) {
+        for (int q = 0; q < PARTS; q++) {
+            dice->third[q] = N(draw_known)(&late->s, q, LGA_CUT_THIRD);
+            dice->fifth[q] = N(draw_known)(&late->s, q, LGA_CUT_FIFTH);
+            for (int k = 0; k < 6; k++) dice->coin[k][q] = N(next)(&late->s, q);
+        }
     }
     for (int d = 0; d < 6; d++) out[d] = waiting[d];
     N(let_in)(out, came.all, room, crowded, dice, p);
@@ -144,7 +144,9 @@ INLINE void N(turn_back)(const struct lga_row_arrive *row, struct N(late) *late,
 {
     const struct lga_die die = row->dice->of[LGA_DIE_STOP];     /* the same for all six */
     if (N(reach)(late, block, row->source, 6 * die.bits)) {
-        for (int d = 0; d < 6; d++) N(roll)(&late->s, die, stop[d]);
+        for (int d = 0; d < 6; d++) {
+            for (int q = 0; q < PARTS; q++) stop[d][q] = N(draw)(&late->s, q, die);
+        }
     }
     for (int d = 0; d < 6; d++) {
         const vec stops = stays[d] & stop[d][p] & ~(rest[0] & rest[1] & rest[2]);
