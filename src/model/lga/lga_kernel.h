@@ -73,14 +73,18 @@ INLINE vec N(mixed)(uint64_t key, uint32_t first)
     return z ^ (z >> 31);
 }
 
+INLINE void N(seed_part)(struct N(stream) *s, int p, uint64_t key)
+{
+    const uint32_t first = (uint32_t)p * KERNEL_WIDTH;
+    s->a[p] = N(mixed)(key, first);
+    s->b[p] = N(mixed)(key, LGA_LANES + first);
+    s->c[p] = N(mixed)(key, 2 * LGA_LANES + first);
+    s->d[p] = N(mixed)(key, 3 * LGA_LANES + first);
+}
+
 INLINE void N(seed)(struct N(stream) *s, uint64_t key)
 {
-    for (uint32_t p = 0; p < PARTS; p++) {
-        s->a[p] = N(mixed)(key, p * KERNEL_WIDTH);
-        s->b[p] = N(mixed)(key, LGA_LANES + p * KERNEL_WIDTH);
-        s->c[p] = N(mixed)(key, 2 * LGA_LANES + p * KERNEL_WIDTH);
-        s->d[p] = N(mixed)(key, 3 * LGA_LANES + p * KERNEL_WIDTH);
-    }
+    for (int p = 0; p < PARTS; p++) N(seed_part)(s, p, key);
 }
 
 INLINE vec N(next)(struct N(stream) *s, int p)
@@ -138,23 +142,23 @@ INLINE vec N(draw_known)(struct N(stream) *s, int p, uint32_t threshold)
     return out;
 }
 
-/* Dice that few blocks of a row need: their stream is followed no farther than to the last block
- * that asks, and not at all if none does. */
-struct N(late) { struct N(stream) s; uint32_t next; };
-
-/* Are the dice of a block still to be rolled?  Then the stream is brought to where they are; the
- * dice of a block take `words` of it. */
-INLINE bool N(reach)(struct N(late) *late, uint32_t block, struct lga_dice_source source, int words)
+INLINE void N(skip)(struct N(stream) *s, int p, uint32_t words)
 {
-    if (late->next > block) return false;
-    if (late->next == 0) N(seed)(&late->s, lga_dice_key(source));
-    for (; late->next < block; late->next += LGA_LANES) {
-        for (int k = 0; k < words; k++) {
-            for (int p = 0; p < PARTS; p++) N(next)(&late->s, p);
-        }
-    }
-    late->next = block + LGA_LANES;
-    return true;
+    for (uint32_t k = 0; k < words; k++) N(next)(s, p);
+}
+
+/* Dice that few nodes need: each vector's stream is followed no farther than to the last block that
+ * asks, and not at all if none does.  `at` is where it is, in words, once it has begun. */
+struct N(late) { struct N(stream) s; uint32_t at[PARTS]; bool begun[PARTS]; };
+
+/* Brings the stream to the word numbered `to` of a row; of these the caller takes `words`. */
+INLINE void N(reach)(struct N(late) *late, int p, struct lga_dice_source source, uint32_t to,
+                     uint32_t words)
+{
+    if (!late->begun[p]) N(seed_part)(&late->s, p, lga_dice_key(source));
+    late->begun[p] = true;
+    N(skip)(&late->s, p, to - late->at[p]);
+    late->at[p] = to + words;
 }
 
 KERNEL_TARGET static void N(roll_row)(const struct lga_dice *dice, uint64_t key, uint32_t words,

@@ -60,12 +60,13 @@ INLINE void N(choose_third)(const vec set[3], vec here, const vec rank[2], vec c
     chosen[2] = here & ~(chosen[0] | chosen[1]);
 }
 
-/* One of the members of a set, all with equal chance, where it `may` be and there is one: dice. */
+/* One of the members of a set, all with equal chance, where it `may` be and there is one: dice.
+ * Sets of three and six need `third`, those of five `fifth`. */
 struct N(pick) { vec third, fifth, coin, second; };
 
-INLINE void N(choose)(const vec set[6], vec may, struct N(pick) dice, vec chosen[6])
+INLINE void N(choose)(const vec set[6], struct N(tally) t, vec may, struct N(pick) dice,
+                      vec chosen[6])
 {
-    const struct N(tally) t = N(tallied)(set);
     /* Of 2 by a coin, of 4 by two; of 5 the last, or else as of 4; of 3 the first by the die, or
      * else by a coin; of 6 as of 3, and a coin.  `n` is the number of members. */
     const vec n0 = t.all[0], n1 = t.all[1], n2 = t.all[2], fifth = n0 & dice.fifth;

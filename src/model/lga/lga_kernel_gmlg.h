@@ -122,22 +122,17 @@ INLINE vec N(collide_tight)(vec m[6], vec rest[3], vec side, vec kick, vec loss,
 
 /* Where a node holds more than seven grains, all is done in the longer way. */
 INLINE vec N(collide_gmlg)(const struct lga_row_gmlg *row, struct N(late) *ways, uint32_t block,
-                           vec m[6], vec rest[3], vec side, vec kick, vec loss, vec way[2][PARTS],
-                           int p)
+                           int p, vec m[6], vec rest[3], vec side, vec kick, vec loss)
 {
     const struct N(tally) movers = N(tallied)(m);
     const vec carry = N(most)(rest[1], movers.all[1], rest[0] & movers.all[0]);
     if (!N(any)(N(most)(rest[2], movers.all[2], carry))) {
         return N(collide_roomy)(m, rest, side, kick, loss);
     }
-    const struct lga_die third = row->dice->of[LGA_DIE_WAY_THIRD];
-    const struct lga_die coin = row->dice->of[LGA_DIE_WAY_SIDE];
-    if (N(reach)(ways, block, row->ways, third.bits + coin.bits)) {
-        N(roll)(&ways->s, third, way[0]);
-        N(roll)(&ways->s, coin, way[1]);
-    }
-    const vec mine[2] = {way[0][p], way[1][p]};
-    return N(collide_tight)(m, rest, side, kick, loss, mine);
+    N(reach)(ways, p, row->ways, block / LGA_LANES * (LGA_CUT_BITS + 1), LGA_CUT_BITS + 1);
+    const vec third = N(draw_known)(&ways->s, p, LGA_CUT_THIRD);
+    const vec way[2] = {third, N(next)(&ways->s, p)};
+    return N(collide_tight)(m, rest, side, kick, loss, way);
 }
 
 /* Gravity on a rest grain that may start: straight down, or rolling where it is held by one side
@@ -192,6 +187,22 @@ INLINE void N(bend_level)(vec m[6], const vec from[6], const vec full[6], vec le
     m[5] = N(odd)(m[5], down5, swap);
 }
 
+/* The dice for a choice among `count` of each node; what none needs is passed over. */
+INLINE struct N(pick) N(roll_pick)(struct N(stream) *s, int p, const vec count[3], vec needed)
+{
+    struct N(pick) dice = {.third = {0}, .fifth = {0}};
+    if (N(any)(needed & count[1] & (count[0] | count[2]))) {
+        dice.third = N(draw_known)(s, p, LGA_CUT_THIRD);
+    } else {
+        N(skip)(s, p, LGA_CUT_BITS);
+    }
+    if (N(any)(needed & count[2] & count[0])) dice.fifth = N(draw_known)(s, p, LGA_CUT_FIFTH);
+    else N(skip)(s, p, LGA_CUT_BITS);
+    dice.coin = N(next)(s, p);
+    dice.second = N(next)(s, p);
+    return dice;
+}
+
 /* Gravity on a vector of nodes that have collided; the grains that had movers before are not held
  * by friction. */
 INLINE void N(fall_gmlg)(const struct lga_row_gmlg *row, struct N(stream) *s,
@@ -203,11 +214,6 @@ INLINE void N(fall_gmlg)(const struct lga_row_gmlg *row, struct N(stream) *s,
     const vec left = N(draw)(s, p, of[LGA_DIE_FALL_SIDE]);
     const vec bends = N(draw)(s, p, of[LGA_DIE_BEND]);
     const vec bends_left = N(draw)(s, p, of[LGA_DIE_BEND_SIDE]);
-    struct N(pick) dice;
-    dice.third = N(draw_known)(s, p, LGA_CUT_THIRD);
-    dice.fifth = N(draw_known)(s, p, LGA_CUT_FIFTH);
-    dice.coin = N(draw)(s, p, of[LGA_DIE_PICK_COIN]);
-    dice.second = N(draw)(s, p, of[LGA_DIE_PICK_SECOND]);
     const vec kept_left = N(draw)(friction, p, of[LGA_DIE_FRICTION_LEFT]) & ~had_movers;
     const vec kept_right = N(draw)(friction, p, of[LGA_DIE_FRICTION_RIGHT]) & ~had_movers;
     const vec starts = (rest[0] | rest[1] | rest[2]) & falls;
@@ -215,7 +221,8 @@ INLINE void N(fall_gmlg)(const struct lga_row_gmlg *row, struct N(stream) *s,
     for (int d = 2; d < 6; d++) full[d] = N(load)(row->full[d] + w);
     if (vertical) N(start_vertical)(m, rest, starts, left, full, kept_left, kept_right);
     else N(start_level)(m, rest, starts, left, full, kept_left, kept_right);
-    N(choose)(m, bends, dice, from);
+    const struct N(tally) t = N(tallied)(m);
+    N(choose)(m, t, bends, N(roll_pick)(s, p, t.all, bends), from);
     if (vertical) N(bend_vertical)(m, from, full);
     else N(bend_level)(m, from, full, bends_left);
 }
@@ -227,9 +234,8 @@ INLINE uint64_t N(gmlg_effects)(const struct lga_row_gmlg *row, unsigned effects
     const bool tight = effects & LGA_BITS_TIGHT, gravity = effects & LGA_BITS_GRAVITY;
     const struct lga_die *of = row->dice->of;
     uint64_t collisions = 0;
-    struct N(late) ways = {.next = 0};
+    struct N(late) ways = {.begun = {false}};
     struct N(stream) s, friction;
-    vec way[2][PARTS] = {{{0}}};
     N(seed)(&s, lga_dice_key(row->source));
     friction = s;
     if (of[LGA_DIE_FRICTION_LEFT].bits) N(seed)(&friction, lga_dice_key(row->friction));
@@ -248,8 +254,7 @@ INLINE uint64_t N(gmlg_effects)(const struct lga_row_gmlg *row, unsigned effects
             const vec side = N(draw)(&s, p, of[LGA_DIE_SIDE]);
             const vec kick = N(draw)(&s, p, of[LGA_DIE_KICK]);
             const vec loss = N(draw)(&s, p, of[LGA_DIE_LOSS]);
-            const vec hit = tight ? N(collide_gmlg)(row, &ways, block, m, rest, side, kick, loss,
-                                                    way, p)
+            const vec hit = tight ? N(collide_gmlg)(row, &ways, block, p, m, rest, side, kick, loss)
                                   : N(collide_roomy)(m, rest, side, kick, loss);
             collisions += N(count)(hit);
             if (row->hits) N(note)(row->hits, words, w, hit);

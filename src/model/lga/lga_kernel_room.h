@@ -36,8 +36,6 @@ KERNEL_TARGET static enum lga_holds N(survey)(const struct lga_row_survey *row)
 
 /* --- who is let in --- */
 
-struct N(admission) { vec third[PARTS], fifth[PARTS], coin[6][PARTS]; };
-
 /* a - b in three bits. */
 INLINE void N(difference)(const vec a[3], const vec b[3], vec out[3])
 {
@@ -56,13 +54,20 @@ INLINE vec N(exceeds)(const vec a[3], const vec b[3])
     return more;
 }
 
+/* Where the dice of a block begin: of three, of five, and six coins. */
+INLINE uint32_t N(admission)(uint32_t block)
+{
+    return block / LGA_LANES * (2 * LGA_CUT_BITS + 6);
+}
+
 /* Leaves of the `waiting` of `crowded` nodes as many as there is room for: picks those who may come,
  * or those who may not, whichever are fewer: three at most.  Apart from the loop that asks for it,
  * because that seldom does. */
 KERNEL_TARGET __attribute__((noinline))
-static void N(let_in)(vec waiting[6], const vec count[3], const vec room[3], vec crowded,
-                      const struct N(admission) *dice, int p)
+static void N(let_in)(const struct lga_row_admit *row, struct N(late) *late, uint32_t block, int p,
+                      vec waiting[6], const vec count[3], const vec room[3], vec crowded)
 {
+    const uint32_t at = N(admission)(block);
     vec excess[3], left[6], chosen[6], picked[6] = {{0}};
     for (int d = 0; d < 6; d++) left[d] = waiting[d];
     N(difference)(count, room, excess);
@@ -70,11 +75,21 @@ static void N(let_in)(vec waiting[6], const vec count[3], const vec room[3], vec
     const vec two = one & (room[1] | room[2]) & (excess[1] | excess[2]);
     const vec three = two & count[2] & count[1] & room[0] & room[1];
     const vec again[3] = {one, two, three};
-    for (int k = 0; k < 3 && N(any)(again[k]); k++) {
-        const vec zero = {0};
-        const struct N(pick) pick = {k < 2 ? dice->third[p] : zero, k < 2 ? dice->fifth[p] : zero,
-                                     dice->coin[2 * k][p], dice->coin[2 * k + 1][p]};
-        N(choose)(left, again[k], pick, chosen);
+    struct N(pick) pick = {.third = {0}, .fifth = {0}};
+    if (N(any)(one & (count[2] | (count[1] & count[0])))) {
+        N(reach)(late, p, row->source, at, LGA_CUT_BITS);
+        pick.third = N(draw_known)(&late->s, p, LGA_CUT_THIRD);
+    }
+    if (N(any)(one & count[2] & (count[1] | count[0]))) {
+        N(reach)(late, p, row->source, at + LGA_CUT_BITS, LGA_CUT_BITS);
+        pick.fifth = N(draw_known)(&late->s, p, LGA_CUT_FIFTH);
+    }
+    for (uint32_t k = 0; k < 3 && N(any)(again[k]); k++) {
+        N(reach)(late, p, row->source, at + 2 * LGA_CUT_BITS + 2 * k, 2);
+        pick.coin = N(next)(&late->s, p);
+        pick.second = N(next)(&late->s, p);
+        if (k == 2) pick.third = pick.fifth = (vec){0};
+        N(choose)(left, N(tallied)(left), again[k], pick, chosen);
         for (int d = 0; d < 6; d++) {
             picked[d] |= chosen[d];
             left[d] &= ~chosen[d];
@@ -87,9 +102,8 @@ static void N(let_in)(vec waiting[6], const vec count[3], const vec room[3], vec
 
 /* Which of a vector of nodes have more arrivals than room?  Sends some of these away and counts
  * them. */
-INLINE uint64_t N(refuse)(const struct lga_row_admit *row, struct N(late) *late,
-                          struct N(admission) *dice, uint32_t block, int p, const vec waiting[6],
-                          vec arriving[6])
+INLINE uint64_t N(refuse)(const struct lga_row_admit *row, struct N(late) *late, uint32_t block,
+                          int p, const vec waiting[6], vec arriving[6])
 {
     const uint32_t w = block + (uint32_t)p * KERNEL_WIDTH;
     const struct N(tally) came = N(tallied)(waiting);
@@ -97,15 +111,8 @@ INLINE uint64_t N(refuse)(const struct lga_row_admit *row, struct N(late) *late,
     for (uint32_t k = 0; k < 3; k++) room[k] = N(load)(row->room + k * row->stride + w);
     const vec crowded = N(exceeds)(came.all, room);
     if (!N(any)(crowded)) return 0;
-    if (N(reach)(late, block, row->source, 2 * LGA_CUT_BITS + 6)) {
-        for (int q = 0; q < PARTS; q++) {
-            dice->third[q] = N(draw_known)(&late->s, q, LGA_CUT_THIRD);
-            dice->fifth[q] = N(draw_known)(&late->s, q, LGA_CUT_FIFTH);
-            for (int k = 0; k < 6; k++) dice->coin[k][q] = N(next)(&late->s, q);
-        }
-    }
     for (int d = 0; d < 6; d++) out[d] = waiting[d];
-    N(let_in)(out, came.all, room, crowded, dice, p);
+    N(let_in)(row, late, block, p, out, came.all, room, crowded);
     const vec real = N(load)(row->real + w);
     for (int d = 0; d < 6; d++) {
         out[d] = waiting[d] & ~out[d];
@@ -119,8 +126,7 @@ KERNEL_TARGET static uint64_t N(admit)(const struct lga_row_admit *row)
 {
     const uint32_t words = row->words, stride = row->stride;
     uint64_t refused = 0;
-    struct N(late) late = {.next = 0};
-    struct N(admission) dice;
+    struct N(late) late = {.begun = {false}};
     for (uint32_t block = 0; block < words; block += LGA_LANES) {
         for (int p = 0; p < PARTS; p++) {
             const uint32_t w = block + (uint32_t)p * KERNEL_WIDTH;
@@ -130,7 +136,7 @@ KERNEL_TARGET static uint64_t N(admit)(const struct lga_row_admit *row)
                 arriving[d] = N(load)(row->from[d] + w) & fluid;
                 waiting[d] = arriving[d] & ~N(load)(row->own + (d + 3) % 6 * stride + w);
             }
-            if (row->crowds) refused += N(refuse)(row, &late, &dice, block, p, waiting, arriving);
+            if (row->crowds) refused += N(refuse)(row, &late, block, p, waiting, arriving);
             for (uint32_t d = 0; d < 6; d++) N(store)(row->out + d * stride + w, arriving[d]);
         }
     }
@@ -138,18 +144,16 @@ KERNEL_TARGET static uint64_t N(admit)(const struct lga_row_admit *row)
 }
 
 /* The movers of a vector of nodes that could not leave stop where there is room, or go back. */
-INLINE void N(turn_back)(const struct lga_row_arrive *row, struct N(late) *late,
-                         vec stop[6][PARTS], uint32_t block, int p, const vec stays[6],
-                         vec next[6], vec rest[3])
+INLINE void N(turn_back)(const struct lga_row_arrive *row, struct N(late) *late, uint32_t block,
+                         int p, const vec stays[6], vec next[6], vec rest[3])
 {
     const struct lga_die die = row->dice->of[LGA_DIE_STOP];     /* the same for all six */
-    if (N(reach)(late, block, row->source, 6 * die.bits)) {
-        for (int d = 0; d < 6; d++) {
-            for (int q = 0; q < PARTS; q++) stop[d][q] = N(draw)(&late->s, q, die);
-        }
-    }
-    for (int d = 0; d < 6; d++) {
-        const vec stops = stays[d] & stop[d][p] & ~(rest[0] & rest[1] & rest[2]);
+    const uint32_t bits = (uint32_t)die.bits, at = block / LGA_LANES * 6 * bits;
+    for (uint32_t d = 0; d < 6; d++) {
+        if (!N(any)(stays[d])) continue;
+        N(reach)(late, p, row->source, at + d * bits, bits);
+        const vec room = ~(rest[0] & rest[1] & rest[2]);
+        const vec stops = stays[d] & N(draw)(&late->s, p, die) & room;
         N(add_bit)(rest, stops);
         next[(d + 3) % 6] |= stays[d] & ~stops;
     }
@@ -160,8 +164,7 @@ KERNEL_TARGET static uint64_t N(arrive)(const struct lga_row_arrive *row)
 {
     const uint32_t words = row->words, stride = row->stride;
     uint64_t gone = 0;
-    struct N(late) late = {.next = 0};
-    vec stop[6][PARTS];
+    struct N(late) late = {.begun = {false}};
     for (uint32_t block = 0; block < words; block += LGA_LANES) {
         for (int p = 0; p < PARTS; p++) {
             const uint32_t w = block + (uint32_t)p * KERNEL_WIDTH;
@@ -179,7 +182,7 @@ KERNEL_TARGET static uint64_t N(arrive)(const struct lga_row_arrive *row)
                 stays[d] = N(load)(row->own + d * stride + w) & ~N(load)(row->admitted[d] + w);
                 stuck |= stays[d];
             }
-            if (N(any)(stuck)) N(turn_back)(row, &late, stop, block, p, stays, next, rest);
+            if (N(any)(stuck)) N(turn_back)(row, &late, block, p, stays, next, rest);
             if (row->held) {
                 const vec wall = N(load)(row->wall + w);
                 for (uint32_t d = 0; d < 6; d++) {

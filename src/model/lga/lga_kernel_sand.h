@@ -100,7 +100,7 @@ KERNEL_TARGET static void N(fall_row)(const struct lga_row_fall *row)
                 vec from[6], full[6] = {{0}};
                 full[4] = wall[0] | N(load)(row->rest_left + w);
                 full[5] = wall[1] | N(load)(row->rest_right + w);
-                N(choose)(m, bend[p], dice, from);
+                N(choose)(m, N(tallied)(m), bend[p], dice, from);
                 N(bend_level)(m, from, full, bend_left[p]);
             }
             for (uint32_t d = 0; d < 6; d++) N(store)(row->out + d * row->stride + w, m[d]);
