@@ -176,31 +176,45 @@ INLINE void N(start_level)(vec m[6], vec rest[3], vec starts, vec left, const ve
     N(subtract_bit)(rest, go4 | go5);
 }
 
-/* The mover `from` bends down, into a free slot and not towards a full node. */
-INLINE void N(bend_vertical)(vec m[6], const vec from[6], const vec full[6])
+/* The movers that gravity can bend: down there is a free slot, and no full node. */
+INLINE void N(able_vertical)(const vec m[6], const vec full[6], vec able[6])
 {
     const vec free2 = ~m[2] & ~full[2], free3 = ~m[3] & ~full[3], free4 = ~m[4] & ~full[4];
-    const vec one = from[1] & free2, five = from[5] & free4;
-    const vec zero = from[0] & free3, two = from[2] & free3, four = from[4] & free3;
-    m[0] ^= zero;
-    m[1] ^= one;
-    m[2] ^= two | one;
-    m[3] ^= zero | two | four;
-    m[4] ^= four | five;
-    m[5] ^= five;
+    able[0] = m[0] & free3;
+    able[1] = m[1] & free2;
+    able[2] = m[2] & free3;
+    able[3] = (vec){0};
+    able[4] = m[4] & free3;
+    able[5] = m[5] & free4;
 }
 
-INLINE void N(bend_level)(vec m[6], const vec from[6], const vec full[6], vec left)
+INLINE void N(able_level)(const vec m[6], const vec full[6], vec left, vec able[6])
 {
     const vec free4 = ~m[4] & ~full[4], free5 = ~m[5] & ~full[5];
-    const vec zero = from[0] & free5, one = from[1] & free5, four = from[4] & ~left & free5;
-    const vec two = from[2] & free4, three = from[3] & free4, five = from[5] & left & free4;
-    m[0] ^= zero;
-    m[1] ^= one;
-    m[2] ^= two;
-    m[3] ^= three;
-    m[4] ^= two | three | five | four;
-    m[5] ^= zero | one | four | five;
+    able[0] = m[0] & free5;
+    able[1] = m[1] & free5;
+    able[2] = m[2] & free4;
+    able[3] = m[3] & free4;
+    able[4] = m[4] & free5 & ~left;
+    able[5] = m[5] & free4 & left;
+}
+
+/* One of them, `from`, bends. */
+INLINE void N(bend_vertical)(vec m[6], const vec from[6])
+{
+    m[0] ^= from[0];
+    m[1] ^= from[1];
+    m[2] ^= from[2] | from[1];
+    m[3] ^= from[0] | from[2] | from[4];
+    m[4] ^= from[4] | from[5];
+    m[5] ^= from[5];
+}
+
+INLINE void N(bend_level)(vec m[6], const vec from[6])
+{
+    for (int d = 0; d < 4; d++) m[d] ^= from[d];
+    m[4] ^= from[2] | from[3] | from[5] | from[4];
+    m[5] ^= from[0] | from[1] | from[4] | from[5];
 }
 
 /* What a block of nodes draws. */
@@ -214,7 +228,7 @@ struct N(rolled) {
 INLINE void N(fall_gmlg)(const struct lga_row_gmlg *row, const struct N(rolled) *rolled, uint32_t w,
                          int p, vec had_movers, bool vertical, vec m[6], vec rest[3])
 {
-    vec full[6], count[3] = {{0}}, from[6];
+    vec full[6], able[6], count[3] = {{0}}, from[6];
     for (int d = 2; d < 6; d++) full[d] = N(load)(row->full[d] + w);
     full[0] = full[1] = (vec){0};
     const vec starts = ~N(is_zero)(rest) & rolled->falls[p];
@@ -225,13 +239,15 @@ INLINE void N(fall_gmlg)(const struct lga_row_gmlg *row, const struct N(rolled) 
     } else {
         N(start_level)(m, rest, starts, rolled->left[p], full, kept_left, kept_right);
     }
-    for (int d = 0; d < 6; d++) N(add_bit)(count, m[d]);
+    if (vertical) N(able_vertical)(m, full, able);
+    else N(able_level)(m, full, rolled->bends_left[p], able);
+    for (int d = 0; d < 6; d++) N(add_bit)(count, able[d]);
     const struct N(pick) dice = {rolled->third[p], rolled->fifth[p], rolled->coin[p],
                                  rolled->second[p]};
-    N(choose)(m, count, dice, from);
+    N(choose)(able, count, dice, from);
     for (int d = 0; d < 6; d++) from[d] &= rolled->bends[p];
-    if (vertical) N(bend_vertical)(m, from, full);
-    else N(bend_level)(m, from, full, rolled->bends_left[p]);
+    if (vertical) N(bend_vertical)(m, from);
+    else N(bend_level)(m, from);
 }
 
 INLINE void N(roll_gmlg)(const struct lga_die *of, struct N(stream) *s, struct N(stream) *ways,
