@@ -63,15 +63,17 @@ static void vessel_free(struct vessel *v)
 }
 
 /* A funnel of 60 degrees over an open box.  Its hole is `hole` spacings wide down to one below the
- * neck, and six more through a lip of two rows under that. */
+ * neck, and six more through a lip under that.  In V that leaves, of 138 columns of 191 nodes, just
+ * the 6551 walls of the reference's picture but one in an upper corner, where no grain comes. */
 static void cut_hourglass(struct vessel *v, double hole)
 {
+    const double lip = v->lga->rule.vertical ? 1 : 1.25, end = lip + 1.5;
     for (uint32_t i = 0; i < v->width; i++) {
         for (uint32_t j = 0; j < v->height; j++) {
             const double dy = node_y(v, i, j) - v->neck;
-            const double half = 0.5 * hole + (dy < -1.25 ? 3 : fmax(0, dy) / sqrt(3));
+            const double half = 0.5 * hole + (dy < -lip ? 3 : fmax(0, dy) / sqrt(3));
             const bool beside = fabs(node_x(v, i, j) - v->middle) > half;
-            if (dy > -2.75 && beside) v->kind[node(v, i, j)] = LGA_WALL;
+            if (dy > -end && beside) v->kind[node(v, i, j)] = LGA_WALL;
         }
     }
 }
@@ -150,7 +152,7 @@ static double surface_angle(const struct vessel *v, double floor, double ceiling
 }
 
 /* Mean of both flanks of the heap in the box, between 15 and 85 % of its height above the lowest
- * place of the surface: it covers the floor.  (The surface in the reference's picture gives 26.6 in
+ * place of the surface: it covers the floor.  (The surface in the reference's picture gives 26.5 in
  * that way, and 24.3 if heights are taken from the floor.) */
 static double heap_angle(const struct vessel *v)
 {
@@ -175,16 +177,16 @@ enum { HOURGLASS = 20000, WINDOWS = 8 };
 
 /* The flow in each window, and its mean but for the first, in which the first grains are still
  * falling; then it runs until all is at rest.  Sums over the seeds. */
-struct glass { struct sample flow[WINDOWS], rate, angle; double spread; };
+struct glass { struct sample flow[WINDOWS], rate, angle; };
 
 static void run_hourglass(struct lga_rule rule, uint64_t seed, int window, struct glass *glass)
 {
-    struct vessel v = rule.vertical ? vessel(rule, 141, 193, seed) : vessel(rule, 122, 222, seed);
-    v.middle = rule.vertical ? 60 + ROW_HEIGHT : 60.5;
-    v.neck = rule.vertical ? 96.5 : 111 * ROW_HEIGHT;
+    struct vessel v = rule.vertical ? vessel(rule, 140, 193, seed) : vessel(rule, 122, 222, seed);
+    v.middle = rule.vertical ? 60.7 : 60.5;
+    v.neck = rule.vertical ? 95.7 : 111 * ROW_HEIGHT;
     cut_hourglass(&v, 8);
     fill(&v, HOURGLASS);
-    double least = INFINITY, most = 0, rate = 0;
+    double rate = 0;
     uint32_t before = 0;
     int ticks = 1;
     for (; ticks <= window * WINDOWS; ticks++) {
@@ -198,8 +200,6 @@ static void run_hourglass(struct lga_rule rule, uint64_t seed, int window, struc
         sample_add(&glass->flow[ticks / window - 1], flow);
         if (ticks == window) continue;
         rate += flow / (WINDOWS - 1);
-        least = fmin(least, flow);
-        most = fmax(most, flow);
     }
     for (; ticks < 20000; ticks++) {            /* nothing starts again once all is at rest */
         if (ticks % 50 == 0 && census(&v).movers == 0) break;
@@ -210,7 +210,6 @@ static void run_hourglass(struct lga_rule rule, uint64_t seed, int window, struc
     assert_int_equal(end.all, HOURGLASS);
     sample_add(&glass->rate, rate);
     sample_add(&glass->angle, heap_angle(&v));
-    glass->spread = fmax(glass->spread, most - least);
     vessel_free(&v);
 }
 
@@ -230,16 +229,18 @@ static void test_an_hourglass_runs_at_a_constant_rate_and_comes_to_rest(void **u
 {
     (void)unused;
     /* V, k = 0.5, hole 8, 20000 grains: 11.91 grains a tick, constant, and a heap of 26.8 degrees.
-     * Single seeds of ours scatter by 0.07, so both means of three are known to 0.04; three of both
-     * are allowed.  A node more across the neck would be 1.3.  What counts as the bottom of the
-     * heap is not told, and makes 3 degrees: ours is at 28.1 above the lowest place of the surface
-     * and at 25.0 above the floor.  Half of that is allowed.  The reference's windows of single
-     * seeds spread by +-0.14. */
+     * Single seeds of ours scatter by 0.05 and 0.2 degrees, means of three by 0.03 and 0.12; the
+     * reference by 0.02 and 0.2.  Three of both are allowed.  (A node more across the neck would be
+     * 1.3, and a column more across the box 1.3 degrees.)  Single windows scatter by 0.15, like the
+     * reference's, so that three of them and four, of three seeds, differ by 0.07. */
     const struct glass glass = glass_of(sand, 200, "hourglass V k 0.5 hole 8", "11.91(2)",
                                         "26.8(2)");
-    CHECK(glass.spread < 0.6);
-    CHECK_NEAR(sample_mean(&glass.rate), 11.91, 3 * 0.04 * sqrt(2));
-    CHECK_NEAR(sample_mean(&glass.angle), 26.8, 1.5);
+    double first = 0, second = 0;
+    for (int k = 1; k <= 3; k++) first += sample_mean(&glass.flow[k]) / 3;
+    for (int k = 4; k < WINDOWS; k++) second += sample_mean(&glass.flow[k]) / 4;
+    CHECK_NEAR(first, second, 3 * 0.07);
+    CHECK_NEAR(sample_mean(&glass.rate), 11.91, 3 * hypot(0.03, 0.02));
+    CHECK_NEAR(sample_mean(&glass.angle), 26.8, 3 * hypot(0.12, 0.2));
 }
 
 static struct lga_rule silo_rule(bool vertical, double friction)
@@ -296,7 +297,10 @@ static void test_sand_that_loses_more_runs_out_ever_more_slowly(void **unused)
     /* k = 0.9.  The length of the reference's windows is not told; with 400 ticks V and H both give
      * all of its seven numbers.  Single seeds scatter by 0.1 in the first and by 0.05 in the last,
      * and the reference is rounded to 0.1; while the flow falls, from the third to the fifth, ten
-     * ticks more or less are as much again.  Both sides scatter: 0.3 and 0.2 are allowed. */
+     * ticks more or less are as much again.  Both sides scatter: 0.3 and 0.2 are allowed.  The
+     * slopes are those of the lattice but for a step or two in each flank, and hardly scatter: 0.03
+     * degrees in V, where counting nodes of one grain or only full ones makes 0.05 more, 0.1 in
+     * H. */
     static const double flow[2][7] = {{10.5, 9.1, 6.3, 4.8, 4.0, 3.5, 3.0},
                                       {10.0, 10.2, 9.2, 6.0, 4.7, 3.9, 3.5}};
     static const double angle[2] = {59.5, 28.53};
@@ -308,7 +312,7 @@ static void test_sand_that_loses_more_runs_out_ever_more_slowly(void **unused)
         for (int k = 0; k < 7; k++) {
             CHECK_NEAR(sample_mean(&glass.flow[k]), flow[vertical][k], k < 5 ? 0.3 : 0.2);
         }
-        CHECK_NEAR(sample_mean(&glass.angle), angle[vertical], 1.5);
+        CHECK_NEAR(sample_mean(&glass.angle), angle[vertical], vertical ? 0.15 : 0.3);
     }
 }
 

@@ -84,7 +84,7 @@ enum lga_die_kind {
     LGA_DIE_MIRROR,             /* walls reflect like mirrors, not back */
     LGA_DIE_PLATE,              /* what falls onto the plate stays there */
     LGA_DIE_PICK_THIRD, LGA_DIE_PICK_FIFTH, LGA_DIE_PICK_COIN, LGA_DIE_PICK_SECOND,
-                                /* which mover of a node bends: one of up to six, alike */
+                                /* which of the movers bends that can: one of up to six, alike */
     LGA_DIE_FRICTION_LEFT, LGA_DIE_FRICTION_RIGHT,      /* a grain does not roll to that side */
     LGA_DIE_WAY_THIRD, LGA_DIE_WAY_SIDE,        /* which pairs stop where not all have room */
     LGA_DIE_ADMIT_THIRD, LGA_DIE_ADMIT_FIFTH,   /* who comes to a node that has not room for all */
@@ -283,11 +283,12 @@ void lga_plain_roll(struct lga *lga);
 void lga_plain_note(struct lga *lga);
 bool lga_plain_die(const struct lga *lga, enum lga_die_kind kind, uint32_t site);
 
-/* 0, 1 or 2, alike; one of a set of directions, and of a node's movers, all with equal chance. */
+/* 0, 1 or 2, alike; one of a set of directions, and of those movers of a node that gravity can
+ * bend, all with equal chance. */
 struct lga_pick { bool third, fifth, coin, second; };
 int lga_plain_third(bool third, bool coin);
 int lga_plain_pick(unsigned set, struct lga_pick dice);
-int lga_plain_mover(const struct lga *lga, uint32_t site);
+int lga_plain_mover(const struct lga *lga, uint32_t site, unsigned able);
 
 /* lga_gmlg.c, lga_sand.c: what happens before streaming, in the plain form. */
 void lga_gmlg_collide(struct lga *lga);

@@ -77,19 +77,25 @@ static void fall(struct lga *lga, uint32_t site)
     lga->moving[site] |= (uint8_t)bit(direction);
 }
 
-/* Gravity on one mover of the node, any of them: its path bends down.  H: 4 and 5 are drawn anew,
- * 1 -> 5 and 2 -> 4 keep the momentum along x. */
+/* Gravity on a mover of the node, any of those that it can bend down: into a free slot, and not
+ * towards a full node.  H: 4 and 5 are drawn anew, 1 -> 5 and 2 -> 4 keep the momentum along x. */
 static void bend(struct lga *lga, uint32_t site)
 {
     static const int down_vertical[LGA_DIRECTIONS] = {3, 2, 3, 3, 3, 4};
     static const int down_level[LGA_DIRECTIONS] = {5, 5, 4, 4, -1, -1};
     const unsigned moving = lga->moving[site];
+    int to[LGA_DIRECTIONS];
+    unsigned able = 0;
     if (moving == 0 || !die(lga, site, LGA_DIE_BEND)) return;
-    const int from = lga_plain_mover(lga, site);
-    int to = lga->rule.vertical ? down_vertical[from] : down_level[from];
-    if (to < 0) to = die(lga, site, LGA_DIE_BEND_SIDE) ? 4 : 5;
-    if (moving & bit(to) || is_full(lga, lga->beside[site][to])) return;
-    lga->moving[site] = (uint8_t)((moving & ~bit(from)) | bit(to));
+    for (int d = 0; d < LGA_DIRECTIONS; d++) {
+        to[d] = lga->rule.vertical ? down_vertical[d] : down_level[d];
+        if (to[d] < 0) to[d] = die(lga, site, LGA_DIE_BEND_SIDE) ? 4 : 5;
+        const bool free = !(moving & bit(to[d])) && !is_full(lga, lga->beside[site][to[d]]);
+        if (free) able |= moving & bit(d);
+    }
+    if (able == 0) return;
+    const int from = lga_plain_mover(lga, site, able);
+    lga->moving[site] = (uint8_t)((moving & ~bit(from)) | bit(to[from]));
 }
 
 /* As many of the waiting as there is room for, any of them: either those who may come are picked,

@@ -160,44 +160,56 @@ INLINE void N(start_level)(vec m[6], vec rest[3], vec starts, vec left, const ve
     N(subtract_bit)(rest, go4 | go5);
 }
 
-/* The mover `from` bends down, into a free slot and not towards a full node. */
-INLINE void N(bend_vertical)(vec m[6], const vec from[6], const vec full[6])
+/* The movers that gravity can bend: down there is a free slot, and no full node. */
+INLINE void N(able_vertical)(const vec m[6], const vec full[6], vec able[6])
 {
     const vec free2 = ~m[2] & ~full[2], free3 = ~m[3] & ~full[3], free4 = ~m[4] & ~full[4];
-    const vec one = from[1] & free2, five = from[5] & free4;
-    const vec zero = from[0] & free3, two = from[2] & free3, four = from[4] & free3;
-    m[0] ^= zero;
-    m[1] ^= one;
-    m[2] ^= two | one;
-    m[3] ^= zero | two | four;
-    m[4] ^= four | five;
-    m[5] ^= five;
+    able[0] = m[0] & free3;
+    able[1] = m[1] & free2;
+    able[2] = m[2] & free3;
+    able[3] = (vec){0};
+    able[4] = m[4] & free3;
+    able[5] = m[5] & free4;
 }
 
-INLINE void N(bend_level)(vec m[6], const vec from[6], const vec full[6], vec left)
+INLINE void N(able_level)(const vec m[6], const vec full[6], vec left, vec able[6])
 {
     const vec free4 = ~m[4] & ~full[4], free5 = ~m[5] & ~full[5];
-    const vec four = from[4] & ~left & free5, five = from[5] & left & free4, swap = four | five;
-    const vec down4 = (from[2] | from[3]) & free4, down5 = (from[0] | from[1]) & free5;
-    m[0] &= ~(from[0] & free5);
-    m[1] &= ~(from[1] & free5);
-    m[2] &= ~(from[2] & free4);
-    m[3] &= ~(from[3] & free4);
-    m[4] = N(odd)(m[4], down4, swap);
-    m[5] = N(odd)(m[5], down5, swap);
+    able[0] = m[0] & free5;
+    able[1] = m[1] & free5;
+    able[2] = m[2] & free4;
+    able[3] = m[3] & free4;
+    able[4] = m[4] & free5 & ~left;
+    able[5] = m[5] & free4 & left;
 }
 
-/* The dice for a choice among `count` of each node; what none needs is passed over. */
-INLINE struct N(pick) N(roll_pick)(struct N(stream) *s, int p, const vec count[3], vec needed)
+/* One of them, `from`, bends. */
+INLINE void N(bend_vertical)(vec m[6], const vec from[6])
+{
+    m[0] ^= from[0];
+    m[1] ^= from[1];
+    m[2] ^= from[2] | from[1];
+    m[3] ^= from[0] | from[2] | from[4];
+    m[4] ^= from[4] | from[5];
+    m[5] ^= from[5];
+}
+
+INLINE void N(bend_level)(vec m[6], const vec from[6])
+{
+    for (int d = 0; d < 4; d++) m[d] ^= from[d];
+    m[4] ^= from[2] | from[3] | from[5] | from[4];
+    m[5] ^= from[0] | from[1] | from[4] | from[5];
+}
+
+/* Dice for a choice among those who are able to bend.  They are never more than four (H: two to
+ * either side; V: whoever flies down another's way is in that one's way), so `fifth` is passed over,
+ * and so is `third` where no node needs it. */
+INLINE struct N(pick) N(roll_pick)(struct N(stream) *s, int p, const vec count[3], vec bends)
 {
     struct N(pick) dice = {.third = {0}, .fifth = {0}};
-    if (N(any)(needed & count[1] & (count[0] | count[2]))) {
-        dice.third = N(draw_known)(s, p, LGA_CUT_THIRD);
-    } else {
-        N(skip)(s, p, LGA_CUT_BITS);
-    }
-    if (N(any)(needed & count[2] & count[0])) dice.fifth = N(draw_known)(s, p, LGA_CUT_FIFTH);
+    if (N(any)(bends & count[1] & count[0])) dice.third = N(draw_known)(s, p, LGA_CUT_THIRD);
     else N(skip)(s, p, LGA_CUT_BITS);
+    N(skip)(s, p, LGA_CUT_BITS);
     dice.coin = N(next)(s, p);
     dice.second = N(next)(s, p);
     return dice;
@@ -217,14 +229,16 @@ INLINE void N(fall_gmlg)(const struct lga_row_gmlg *row, struct N(stream) *s,
     const vec kept_left = N(draw)(friction, p, of[LGA_DIE_FRICTION_LEFT]) & ~had_movers;
     const vec kept_right = N(draw)(friction, p, of[LGA_DIE_FRICTION_RIGHT]) & ~had_movers;
     const vec starts = (rest[0] | rest[1] | rest[2]) & falls;
-    vec full[6] = {{0}}, from[6];
+    vec full[6] = {{0}}, able[6], from[6];
     for (int d = 2; d < 6; d++) full[d] = N(load)(row->full[d] + w);
     if (vertical) N(start_vertical)(m, rest, starts, left, full, kept_left, kept_right);
     else N(start_level)(m, rest, starts, left, full, kept_left, kept_right);
-    const struct N(tally) t = N(tallied)(m);
-    N(choose)(m, t, bends, N(roll_pick)(s, p, t.all, bends), from);
-    if (vertical) N(bend_vertical)(m, from, full);
-    else N(bend_level)(m, from, full, bends_left);
+    if (vertical) N(able_vertical)(m, full, able);
+    else N(able_level)(m, full, bends_left, able);
+    const struct N(tally) t = N(tallied)(able);
+    N(choose)(able, t, bends, N(roll_pick)(s, p, t.all, bends), from);
+    if (vertical) N(bend_vertical)(m, from);
+    else N(bend_level)(m, from);
 }
 
 /* A row collides and falls. */

@@ -97,11 +97,12 @@ KERNEL_TARGET static void N(fall_row)(const struct lga_row_fall *row)
             m[5] |= goes_right;
             if (row->fly) {
                 const struct N(pick) dice = {third[p], fifth[p], coin[p], second[p]};
-                vec from[6], full[6] = {{0}};
+                vec able[6], from[6], full[6] = {{0}};
                 full[4] = wall[0] | N(load)(row->rest_left + w);
                 full[5] = wall[1] | N(load)(row->rest_right + w);
-                N(choose)(m, N(tallied)(m), bend[p], dice, from);
-                N(bend_level)(m, from, full, bend_left[p]);
+                N(able_level)(m, full, bend_left[p], able);
+                N(choose)(able, N(tallied)(able), bend[p], dice, from);
+                N(bend_level)(m, from);
             }
             for (uint32_t d = 0; d < 6; d++) N(store)(row->out + d * row->stride + w, m[d]);
             N(store)(row->out + 6 * row->stride + w, r & ~(goes_left | goes_right));

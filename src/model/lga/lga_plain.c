@@ -71,9 +71,9 @@ int lga_plain_pick(unsigned set, struct lga_pick dice)
     return d;
 }
 
-int lga_plain_mover(const struct lga *lga, uint32_t site)
+int lga_plain_mover(const struct lga *lga, uint32_t site, unsigned able)
 {
-    return lga_plain_pick(lga->moving[site], (struct lga_pick){
+    return lga_plain_pick(able, (struct lga_pick){
         lga_plain_die(lga, LGA_DIE_PICK_THIRD, site), lga_plain_die(lga, LGA_DIE_PICK_FIFTH, site),
         lga_plain_die(lga, LGA_DIE_PICK_COIN, site), lga_plain_die(lga, LGA_DIE_PICK_SECOND, site)
     });

@@ -84,20 +84,26 @@ static void fall_sand(struct lga *lga, uint32_t site)
     lga->moving[site] |= (uint8_t)bit(d);
 }
 
-/* Sandpile: one of the movers bends down, unless a rest grain or a wall is in the way.  (Bent into
- * the plate at once, a grain that bounced off it would never leave its node, and a heap would have
- * no tail.) */
+/* Sandpile: one of the movers bends down, any of those that have a free slot there and neither a
+ * rest grain nor a wall in the way.  (Bent into the plate at once, a grain that bounced off it
+ * would never leave its node, and a heap would have no tail.) */
 static void bend_sand(struct lga *lga, uint32_t site)
 {
     const unsigned moving = lga->moving[site];
     if (moving == 0 || !lga_plain_die(lga, LGA_DIE_BEND, site)) return;
     static const int down[LGA_DIRECTIONS] = {5, 5, 4, 4, -1, -1};
-    const int from = lga_plain_mover(lga, site);
-    const int to = down[from] < 0 ? downward(lga, LGA_DIE_BEND_SIDE, site) : down[from];
-    const uint32_t below = lga->beside[site][to];
-    if (lga->kind[below] == LGA_WALL) return;
-    if (lga->kind[below] == LGA_FLUID && lga->load[below] & LOAD_RESTS) return;
-    if (moving & bit(to)) return;
+    const int again = downward(lga, LGA_DIE_BEND_SIDE, site);
+    unsigned able = 0;
+    for (int d = 0; d < LGA_DIRECTIONS; d++) {
+        const int to = down[d] < 0 ? again : down[d];
+        const uint32_t below = lga->beside[site][to];
+        if (moving & bit(to) || lga->kind[below] == LGA_WALL) continue;
+        if (lga->kind[below] == LGA_FLUID && lga->load[below] & LOAD_RESTS) continue;
+        able |= moving & bit(d);
+    }
+    if (able == 0) return;
+    const int from = lga_plain_mover(lga, site, able);
+    const int to = down[from] < 0 ? again : down[from];
     lga->moving[site] = (uint8_t)((moving & ~bit(from)) | bit(to));
 }
 
