@@ -202,8 +202,8 @@ INLINE void N(bend_level)(vec m[6], const vec from[6])
 }
 
 /* Dice for a choice among those who are able to bend.  They are never more than four (H: two to
- * either side; V: whoever flies down another's way is in that one's way), so `fifth` is passed over,
- * and so is `third` where no node needs it. */
+ * either side; V: three, as those who fly where others would bend to are in their way), so `fifth`
+ * is passed over, and so is `third` where no node needs it. */
 INLINE struct N(pick) N(roll_pick)(struct N(stream) *s, int p, const vec count[3], vec bends)
 {
     struct N(pick) dice = {.third = {0}, .fifth = {0}};

@@ -1,5 +1,5 @@
-/* lga_kernel_room.h - who finds room on the nodes of the GMLG, as logic on vectors of nodes: part of
- * lga_kernel.h.
+/* lga_kernel_room.h - who finds room on the nodes of the GMLG, as logic on vectors of nodes: part
+ * of lga_kernel.h.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  *
@@ -60,9 +60,9 @@ INLINE uint32_t N(admission)(uint32_t block)
     return block / LGA_LANES * (2 * LGA_CUT_BITS + 6);
 }
 
-/* Leaves of the `waiting` of `crowded` nodes as many as there is room for: picks those who may come,
- * or those who may not, whichever are fewer: three at most.  Apart from the loop that asks for it,
- * because that seldom does. */
+/* Leaves of the `waiting` of `crowded` nodes as many as there is room for: picks those who may
+ * come, or those who may not, whichever are fewer: three at most.  Apart from the loop that asks
+ * for it, because that seldom does. */
 KERNEL_TARGET __attribute__((noinline))
 static void N(let_in)(const struct lga_row_admit *row, struct N(late) *late, uint32_t block, int p,
                       vec waiting[6], const vec count[3], const vec room[3], vec crowded)
