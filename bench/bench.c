@@ -309,7 +309,7 @@ const struct bench_case bench_list[] = {
      measure_nodes, .scene = "fhp2-gas"},
     {"lga-sandpile", "sandpile, 2048 x 2048 nodes, walls and gravity", "G nodes/cpu-s", true,
      measure_nodes, .scene = "sandpile"},
-    {"lga-gmlg", "many rest grains, 1024 x 1024 nodes, walls and gravity", "G nodes/cpu-s", true,
+    {"lga-gmlg", "many rest grains, 2048 x 2048 nodes, walls and gravity", "G nodes/cpu-s", true,
      measure_nodes, .scene = "gmlg"},
     {"map-1e6", "temperature map of 1,000,000 grains", "cpu-ms", false, measure_map, .amount = 1e6},
     {"png", "encoding a frame of 1280 x 720, level 1", "cpu-ms", false, measure_png,

@@ -254,6 +254,60 @@ static void test_a_grain_held_by_a_wall_waits(void **unused)
     check_held(&(struct trial){100, 10, OBSTACLES, upright});
 }
 
+static uint64_t movers(const struct lga *lga)
+{
+    uint64_t sum = 0;
+    for (uint32_t n = 0; n < lga->sites; n++) {
+        sum += (uint64_t)__builtin_popcount(lga_node_get(lga, n).moving);
+    }
+    return sum;
+}
+
+static void step_both(struct lga *lga[2], int ticks)
+{
+    for (int t = 0; t < ticks; t++) {
+        for (int k = 0; k < 2; k++) lga_step(lga[k]);
+    }
+    check_equal(lga[0], lga[1]);
+}
+
+/* Sand in a corner of a large box comes to rest, and then a grain falls from the middle.  Compared
+ * to the plain form, or to the fast one on a single thread. */
+static void check_settles(const struct trial *trial, bool plain)
+{
+    enum { TICKS_MAX = 3000, THREADS = 3 };
+    struct lga *lga[2];
+    lga[0] = make(trial, plain, LGA_SIMD_AVX512);
+    omp_set_num_threads(THREADS);
+    lga[1] = make(trial, false, LGA_SIMD_AVX512);
+    omp_set_num_threads(1);
+    CHECK(plain || lga[1]->bits->bands == THREADS);
+    const uint32_t columns = trial->columns, middle = lga[0]->sites / 2 + columns / 2;
+    for (int k = 0; k < 2; k++) {
+        for (uint32_t n = 0; n < lga[k]->sites; n++) {
+            if (n / columns > 16 || n % columns > 16) lga_node_set(lga[k], n, 0, 0);
+        }
+    }
+    step_both(lga, 100);
+    for (int t = 0; t < TICKS_MAX && movers(lga[1]) > 0; t += 20) step_both(lga, 20);
+    CHECK(movers(lga[1]) == 0);
+    CHECK(mass(lga[1]) > 500);
+    step_both(lga, 20);
+    for (int k = 0; k < 2; k++) lga_node_set(lga[k], middle, 0, 1);
+    step_both(lga, 100);
+    CHECK(lga_node_load(lga[1], middle) == 0);
+    for (int k = 0; k < 2; k++) unmake(lga[k]);
+}
+
+static void test_sand_at_rest_lies_until_a_grain_falls_on_it(void **unused)
+{
+    (void)unused;
+    check_settles(&(struct trial){60, 90, BOX, level}, true);
+    check_settles(&(struct trial){60, 90, BOX, upright}, true);
+    check_settles(&(struct trial){300, 220, BOX, level}, false);
+    check_settles(&(struct trial){300, 220, BOX, upright}, false);
+}
+
 static void test_dice_fall_as_often_as_they_should(void **unused)
 {
     (void)unused;
@@ -278,6 +332,10 @@ static void test_dice_fall_as_often_as_they_should(void **unused)
         CHECK_NEAR(sum / n, p, 4 * sqrt(p * (1 - p) / n) + 1e-3 * least);
     }
     CHECK(lga_dice_die(0.5).bits == 1);
+    CHECK(lga_dice_die(1 / 3.0).threshold == LGA_CUT_THIRD);
+    CHECK(lga_dice_die(1 / 3.0).bits == LGA_CUT_BITS);
+    CHECK(lga_dice_die(1 / 5.0).threshold == LGA_CUT_FIFTH);
+    CHECK(lga_dice_die(1 / 5.0).bits == LGA_CUT_BITS);
     CHECK(lga_dice_die(0).bits == 0 && lga_dice_die(0).threshold == 0);
     CHECK(lga_dice_die(1).bits == 0 && lga_dice_die(1).threshold == 1);
 }
@@ -311,6 +369,7 @@ int main(void)
         cmocka_unit_test(test_bits_and_bytes_make_the_same_lattice),
         cmocka_unit_test(test_every_set_of_instructions_and_number_of_threads_gives_the_same_bytes),
         cmocka_unit_test(test_a_grain_held_by_a_wall_waits),
+        cmocka_unit_test(test_sand_at_rest_lies_until_a_grain_falls_on_it),
         cmocka_unit_test(test_each_collision_is_counted_at_one_node),
         cmocka_unit_test(test_dice_fall_as_often_as_they_should),
     };

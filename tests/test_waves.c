@@ -34,6 +34,43 @@ static void test_grains_are_counted_in_their_slabs(void **unused)
     waves_free(&waves);
 }
 
+/* 46 rows in 20 slabs: 14 have two, 6 three, so the contrast of a lattice at rest is
+ * sqrt(0.21)/2.3.  By waves: with x = 2.3 pi n the n-th of the rows shows with sqrt(2) sin(x)/x,
+ * 0.16 and 0.09 for n = 1 and 2, and with the square of sin(x)/x where grains are shared: 0.019
+ * in all. */
+static void test_rows_of_a_lattice_make_no_stripes_in_shared_slabs(void **unused)
+{
+    (void)unused;
+    enum { ROWS = 46 };
+    struct waves waves = series(20, 2, 1);
+    struct grains grains;
+    struct error error;
+    CHECK(grains_create(&grains, ROWS, 0, &error));
+    grains.count = ROWS;
+    for (uint32_t i = 0; i < ROWS; i++) grains.y[i] = (i + 0.5) * 40 / ROWS;
+    waves_add(&waves, &grains);
+    CHECK_NEAR(waves_contrast(&waves, 0), sqrt(0.21) / 2.3, 1e-12);
+    waves.count = 0;
+    memset(waves.density, 0, 40 * sizeof *waves.density);
+    waves.shared = true;
+    waves_add(&waves, &grains);
+    double sum = 0;
+    for (uint32_t s = 0; s < 20; s++) sum += waves.density[s];
+    CHECK_NEAR(sum, ROWS, 1e-9);
+    CHECK_NEAR(waves_contrast(&waves, 0), 0.019, 0.002);
+    /* Half-way between two middles: to both alike; before the first, all to it. */
+    waves.count = 1;
+    grains.count = 2;
+    grains.y[0] = 4;
+    grains.y[1] = 0.1;
+    waves_add(&waves, &grains);
+    CHECK_NEAR(waves.density[20], 1, 1e-12);
+    CHECK_NEAR(waves.density[21], 0.5, 1e-12);
+    CHECK_NEAR(waves.density[22], 0.5, 1e-12);
+    grains_free(&grains);
+    waves_free(&waves);
+}
+
 static void test_a_wave_shows_at_its_frequency_alone(void **unused)
 {
     (void)unused;
@@ -97,6 +134,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_grains_are_counted_in_their_slabs),
+        cmocka_unit_test(test_rows_of_a_lattice_make_no_stripes_in_shared_slabs),
         cmocka_unit_test(test_a_wave_shows_at_its_frequency_alone),
         cmocka_unit_test(test_a_random_walk_has_exponent_two_and_noise_none),
     };

@@ -15,6 +15,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* How far quantile_at() may be from the truth, as a share of it. */
+#define QUANTILE_RESOLUTION (1.0 / 256)
+
 struct quantile {
     uint64_t  count;            /* of numbers added; NANs are passed over */
     double    low, high;        /* the smallest and largest, exact */

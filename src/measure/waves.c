@@ -27,7 +27,17 @@ void waves_free(struct waves *waves)
 static void add(const struct waves *waves, double place, double number, double *now)
 {
     const double at = (place - waves->low) / (waves->high - waves->low) * waves->slabs;
-    if (at >= 0 && at < waves->slabs) now[(uint32_t)at] += number;
+    if (!(at >= 0 && at < waves->slabs)) return;
+    if (!waves->shared) {
+        now[(uint32_t)at] += number;
+        return;
+    }
+    /* Between the middles of two slabs; before the first and behind the last they are the same. */
+    const double middle = fmax(0, fmin(at - 0.5, waves->slabs - 1));
+    const uint32_t lower = (uint32_t)middle;
+    const uint32_t upper = lower + 1 < waves->slabs ? lower + 1 : lower;
+    now[lower] += (1 - (middle - lower)) * number;
+    now[upper] += (middle - lower) * number;
 }
 
 void waves_add(struct waves *waves, const struct grains *grains)

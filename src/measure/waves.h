@@ -14,6 +14,8 @@ struct waves {
     uint32_t slabs, room, count;        /* across the pipe; looks there is room for, and taken */
     double   low, high;         /* the range of y that is looked at ... */
     bool     level;             /* ... or of x; false from the start */
+    bool     shared;            /* a grain counts in the two slabs nearest to it, by its distance
+                                 * (the end ones keep all): lattices show no stripes; or false */
     double   interval;          /* between two looks */
     double  *density;           /* grains in a slab: density[look * slabs + slab] */
 };

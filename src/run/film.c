@@ -141,6 +141,11 @@ static void settle(const struct quantile *values, bool radii, double range[2])
     double high = quantile_at(values, full_colour);
     if (low < 0) high = fmax(-low, high);
     if (high <= 0) high = values->high;
+    /* Nothing lies above, but for what the histogram cannot tell apart: all that moves on a lattice
+     * has one speed, and must not be marked as out of range. */
+    if (high < values->high && values->high <= high * (1 + QUANTILE_RESOLUTION)) {
+        high = values->high;
+    }
     if (high <= 0) high = 1;
     range[0] = low < 0 ? -high : 0;
     range[1] = high;

@@ -29,7 +29,8 @@ static double time_of(const struct footage *footage, uint32_t look, uint32_t loo
 }
 
 /* Looks at the whole run; slabs are `diameters` mean ones wide. */
-static bool watch(struct gauge_job *job, double diameters, struct waves *waves, struct error *error)
+static bool watch(struct gauge_job *job, double diameters, bool shared, struct waves *waves,
+                  struct error *error)
 {
     const struct scene *scene = job->setup->scene;
     const double *box = scene->box, width = box[2] - box[0], height = box[3] - box[1];
@@ -46,6 +47,7 @@ static bool watch(struct gauge_job *job, double diameters, struct waves *waves, 
                       (uint32_t)fmin(fmax(slabs, SLABS_MIN), SLABS_MAX), looks,
                       (last - first) / (looks - 1), error)) return false;
     waves->level = level;
+    waves->shared = shared;
     for (uint32_t k = 0; k < looks; k++) {
         if (!footage_go(job->footage, time_of(job->footage, k, looks), error)) return false;
         waves_add(waves, &job->footage->grains);
@@ -57,7 +59,7 @@ bool gauge_waves_space_time(struct gauge_job *job, struct chart *chart, struct e
 {
     struct waves waves = {0};
     double mean = 0;
-    if (!watch(job, 2, &waves, error)) {
+    if (!watch(job, 2, true, &waves, error)) {
         waves_free(&waves);
         return false;
     }
@@ -83,7 +85,7 @@ bool gauge_waves_spectrum(struct gauge_job *job, struct chart *chart, struct err
     struct waves waves = {0};
     double *power = NULL, step = 0;
     uint32_t bins = 0;
-    bool done = watch(job, 20, &waves, error);
+    bool done = watch(job, 20, false, &waves, error);
     done = done && waves_spectrum(&waves, waves.count / 4, &power, &bins, &step, error);
     if (done) {
         gauge_label_axes(job, chart, "frequency", "1/time", "power of the grains in a slab", "1");

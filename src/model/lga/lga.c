@@ -203,7 +203,8 @@ static void mean_grain(struct lga *lga)
     double density = 0;
     for (uint32_t k = 0; k < scene->species_count; k++) density += scene->species[k].density;
     density = scene->species_count ? density / scene->species_count : 1;
-    lga->radius = lga->lattice.spacing / (lga->rule.method == LGA_GMLG ? 2 * SQRT7 : 2);
+    /* Seven to a node do not overlap at this size; at rest in a heap there is one. */
+    lga->radius = lga->lattice.spacing / (lga->rule.heap ? 2 : 2 * SQRT7);
     lga->mass = density * M_PI * scene->radius_mean * scene->radius_mean;
 }
 

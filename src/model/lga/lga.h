@@ -104,6 +104,9 @@ enum lga_stage {
 struct lga_die { uint32_t threshold; int bits; };
 struct lga_dice { struct lga_die of[LGA_DICE]; };
 
+/* What becomes of 1/3 and of 1/5: thresholds out of 2^LGA_CUT_BITS. */
+enum { LGA_CUT_THIRD = 341, LGA_CUT_FIFTH = 205, LGA_CUT_BITS = 10 };
+
 /* Random words come in blocks of LGA_LANES: as many streams run beside each other. */
 enum { LGA_LANES = 8 };
 
@@ -223,7 +226,7 @@ static inline uint64_t lga_dice_key(struct lga_dice_source source)
 {
     return rng_keyed(source.seed, source.tick, source.row, source.stage);
 }
-uint64_t lga_dice_now(const struct lga *lga, uint32_t row, enum lga_stage stage);
+struct lga_dice_source lga_dice_now(const struct lga *lga, uint32_t row, enum lga_stage stage);
 enum lga_stage lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind);
 
 enum lga_simd lga_dice_simd(void);      /* the best of this machine */

@@ -15,6 +15,9 @@
 #include <assert.h>
 #include <omp.h>
 #include <string.h>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 #define KERNEL _base
 #define KERNEL_TARGET
@@ -81,16 +84,27 @@ static uint64_t get_bit(const uint64_t *row, uint32_t words, uint32_t column)
     return row[column % words] >> (column / words) & 1;
 }
 
+/* The column behind the last one, if there is such a one. */
+static void put_copy(const struct lga_bits *bits, uint64_t *row, uint64_t bit)
+{
+    uint64_t *word = &row[bits->copy_word];
+    *word = (*word & ~(1ull << bits->copy_bit)) | bit << bits->copy_bit;
+}
+
 /* Joins the ends of a row: the column behind the last one is the first, and so on around. */
-void lga_bits_join(const struct lga *lga, uint64_t *row)
+void lga_bits_join(const struct lga *lga, uint64_t *row) { lga_bits_join_planes(lga, row, 1); }
+
+void lga_bits_join_planes(const struct lga *lga, uint64_t *row, uint32_t count)
 {
     const struct lga_bits *bits = lga->bits;
-    const uint32_t words = bits->words;
+    const uint32_t words = bits->words, last = bits->last_word, last_bit = bits->last_bit;
     const bool full = lga->lattice.columns == 64 * words;
-    if (!full) put_bit(row, words, lga->lattice.columns, row[0] & 1);
-    row[-1] = (row[words - 1] << 1) | (row[bits->last_word] >> bits->last_bit & 1);
-    row[words] = row[0] >> 1;
-    if (full) row[words] |= row[0] << 63;
+    for (uint32_t p = 0; p < count; p++, row += bits->stride) {
+        if (!full) put_copy(bits, row, row[0] & 1);
+        row[-1] = (row[words - 1] << 1) | (row[last] >> last_bit & 1);
+        row[words] = row[0] >> 1;
+        if (full) row[words] |= row[0] << 63;
+    }
 }
 
 int lga_bits_shift(uint32_t row, int direction) { return column_step[row & 1][direction]; }
@@ -100,7 +114,7 @@ void lga_bits_trim(const struct lga *lga, uint32_t row)
     const struct lga_bits *bits = lga->bits;
     if (lga->lattice.columns == 64 * bits->words) return;
     for (uint32_t p = 0; p < bits->depth; p++) {        /* the column that stands for the first */
-        put_bit(plane(bits, row, p), bits->words, lga->lattice.columns, 0);
+        put_copy(bits, plane(bits, row, p), 0);
     }
 }
 
@@ -139,6 +153,8 @@ bool lga_bits_allocate(struct lga *lga)
     bits->stride = bits->words + 2 * LGA_LANES;
     bits->last_word = (lga->lattice.columns - 1) % bits->words;
     bits->last_bit = (lga->lattice.columns - 1) / bits->words;
+    bits->copy_word = lga->lattice.columns % bits->words;
+    bits->copy_bit = lga->lattice.columns / bits->words;
     bits->bands = lga->sites < LGA_LOOP_MIN ? 1 : rows / 2 < threads ? rows / 2 : threads;
     const bool sandpile = lga->rule.method == LGA_SANDPILE, gmlg = lga->rule.method == LGA_GMLG;
     bits->depth = gmlg ? LGA_GMLG_PLANES : LGA_PLANES;
@@ -200,7 +216,7 @@ static uint64_t prepare(const struct lga *lga, uint32_t y, uint32_t band, uint32
     } else {
         collisions = collide(lga, y, out, effects);
     }
-    for (uint32_t d = 0; d < LGA_DIRECTIONS; d++) lga_bits_join(lga, out + d * lga->bits->stride);
+    lga_bits_join_planes(lga, out, LGA_DIRECTIONS);
     return collisions;
 }
 

@@ -33,6 +33,7 @@ enum { LGA_GMLG_PLANES = 9 };
 struct lga_bits {
     uint32_t words, stride;     /* of a plane of the state; of a row with a margin on each side */
     uint32_t last_word, last_bit;   /* of a row: where its last column is */
+    uint32_t copy_word, copy_bit;   /* and where the one behind it is, a copy of the first */
     uint32_t depth;             /* planes of a row */
     uint32_t bands;             /* rows are shared out in so many parts */
     uint64_t *planes;           /* [row][plane][word] */
@@ -41,6 +42,7 @@ struct lga_bits {
     uint8_t  *kinds;            /* a row of them for each band, while walls are drawn */
     uint64_t *real;             /* [word]: which bits of a row are its nodes; gmlg, heaps */
     uint64_t *rings;            /* rows after their collisions: [band][LGA_RING][plane][word] */
+    bool     *moving;           /* gmlg: which rows on their way hold movers, [band][row] */
     uint64_t *surplus;          /* sandpile: rest grains beyond the first, lowest bit first:
                                  * [row][digit][word] */
     uint32_t digits;            /* of those: two, three if a heap catches grains */
@@ -110,11 +112,13 @@ struct lga_row_survey {
     uint64_t *room, *full;
 };
 
+enum lga_holds { LGA_HOLDS_NOTHING, LGA_HOLDS_REST, LGA_HOLDS_MOVERS };
+
 struct lga_row_gmlg {
     uint32_t words, stride;
     unsigned effects;
     bool held;
-    uint64_t key[LGA_STAGES];
+    struct lga_dice_source source, ways, friction;
     const struct lga_dice *dice;
     const uint64_t *in, *wall;
     const uint64_t *full[LGA_DIRECTIONS];       /* of the neighbours that are not above */
@@ -124,8 +128,7 @@ struct lga_row_gmlg {
 struct lga_row_admit {
     uint32_t words, stride;
     bool crowds;                /* there is only so much room */
-    uint64_t key;
-    const struct lga_dice *dice;
+    struct lga_dice_source source;
     const uint64_t *wall, *real, *room;
     const uint64_t *own;
     const uint64_t *from[LGA_DIRECTIONS];       /* where the movers of a direction come from */
@@ -133,12 +136,12 @@ struct lga_row_admit {
 };
 
 struct lga_row_arrive {
-    uint32_t words, stride;
+    uint32_t words, stride, apart;      /* planes of `rest` lie so far apart */
     bool held, blocks;          /* some mover may be unable to leave */
-    uint64_t key;
+    struct lga_dice_source source;
     const struct lga_dice *dice;
     const uint64_t *wall, *sink;
-    const uint64_t *own, *own_admitted;
+    const uint64_t *own, *own_admitted, *rest;
     const uint64_t *admitted[LGA_DIRECTIONS];   /* was a mover let in where it goes? */
     uint64_t *out;
 };
@@ -156,7 +159,8 @@ struct lga_kernel {
     void (*fall)(const struct lga_row_fall *row);
     uint64_t (*stream_heap)(const struct lga_row_stream *row);
     void (*bind)(const struct lga_row_bind *row);
-    void (*survey)(const struct lga_row_survey *row);
+    enum lga_holds (*survey)(const struct lga_row_survey *row);
+    bool (*stirs)(const struct lga_row_gmlg *row);
     uint64_t (*gmlg_free)(const struct lga_row_gmlg *row);
     uint64_t (*gmlg_level)(const struct lga_row_gmlg *row);
     uint64_t (*gmlg_vertical)(const struct lga_row_gmlg *row);
@@ -194,6 +198,7 @@ uint64_t *lga_bits_wall(const struct lga *lga, uint32_t row);   /* with margins 
 uint64_t *lga_bits_heap(const struct lga *lga, uint32_t row);   /* the same */
 bool lga_bits_allocate_real(struct lga *lga);
 void lga_bits_join(const struct lga *lga, uint64_t *row);       /* fills the margins of a row */
+void lga_bits_join_planes(const struct lga *lga, uint64_t *row, uint32_t count);
 void lga_bits_set(struct lga *lga, uint32_t site, unsigned moving, unsigned rest);
 
 /* How many grains of a row fly in each direction, and how many rest. */

@@ -33,8 +33,8 @@ struct lga_die lga_dice_die(double probability)
 /* One of up to six, all alike. */
 static void set_pick(struct lga_dice *dice)
 {
-    dice->of[LGA_DIE_PICK_THIRD] = lga_dice_die(1 / 3.0);
-    dice->of[LGA_DIE_PICK_FIFTH] = lga_dice_die(1 / 5.0);
+    dice->of[LGA_DIE_PICK_THIRD] = (struct lga_die){LGA_CUT_THIRD, LGA_CUT_BITS};
+    dice->of[LGA_DIE_PICK_FIFTH] = (struct lga_die){LGA_CUT_FIFTH, LGA_CUT_BITS};
     dice->of[LGA_DIE_PICK_COIN] = dice->of[LGA_DIE_PICK_SECOND] = lga_dice_die(0.5);
 }
 
@@ -56,8 +56,8 @@ static struct lga_dice dice_of_gmlg(const struct lga_rule *rule)
     dice.of[LGA_DIE_FRICTION_LEFT] = lga_dice_die(rule->friction);
     dice.of[LGA_DIE_FRICTION_RIGHT] = lga_dice_die(rule->friction);
     set_pick(&dice);
-    dice.of[LGA_DIE_ADMIT_THIRD] = lga_dice_die(1 / 3.0);
-    dice.of[LGA_DIE_ADMIT_FIFTH] = lga_dice_die(1 / 5.0);
+    dice.of[LGA_DIE_ADMIT_THIRD] = dice.of[LGA_DIE_PICK_THIRD];
+    dice.of[LGA_DIE_ADMIT_FIFTH] = dice.of[LGA_DIE_PICK_FIFTH];
     for (int k = 0; k < 6; k++) dice.of[LGA_DIE_ADMIT_COIN + k] = lga_dice_die(0.5);
     return dice;
 }
@@ -88,11 +88,10 @@ uint32_t lga_dice_words(uint32_t columns)
     return (columns + 64 * LGA_LANES - 1) / (64 * LGA_LANES) * LGA_LANES;
 }
 
-uint64_t lga_dice_now(const struct lga *lga, uint32_t row, enum lga_stage stage)
+struct lga_dice_source lga_dice_now(const struct lga *lga, uint32_t row, enum lga_stage stage)
 {
     const bool frozen = stage == LGA_STAGE_FRICTION && lga->rule.frozen;
-    return lga_dice_key((struct lga_dice_source){lga->seed, frozen ? UINT64_MAX - 2 : lga->ticks,
-                                                 row, stage});
+    return (struct lga_dice_source){lga->seed, frozen ? UINT64_MAX - 2 : lga->ticks, row, stage};
 }
 
 enum lga_stage lga_dice_stage(const struct lga_rule *rule, enum lga_die_kind kind)

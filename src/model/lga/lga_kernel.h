@@ -24,6 +24,41 @@ typedef uint64_t N(loose) __attribute__((vector_size(8 * KERNEL_WIDTH), may_alia
 INLINE vec N(load)(const uint64_t *words) { return *(const N(loose) *)words; }
 INLINE void N(store)(uint64_t *words, vec bits) { *(vec *)words = bits; }
 
+/* Three operands that AVX-512 joins in one instruction, whose table of outcomes is the constant. */
+#if KERNEL_WIDTH == 8
+#define TERNARY(a, b, c, table) \
+    (vec)_mm512_ternarylogic_epi64((__m512i)(a), (__m512i)(b), (__m512i)(c), table)
+#endif
+
+/* Where `which` is set the bit of yes, elsewhere that of no. */
+INLINE vec N(either)(vec which, vec yes, vec no)
+{
+#ifdef TERNARY
+    return TERNARY(which, yes, no, 0xca);
+#else
+    return no ^ (which & (yes ^ no));
+#endif
+}
+
+/* The two bits of a + b + c: is it odd, is it two or more? */
+INLINE vec N(odd)(vec a, vec b, vec c)
+{
+#ifdef TERNARY
+    return TERNARY(a, b, c, 0x96);
+#else
+    return a ^ b ^ c;
+#endif
+}
+
+INLINE vec N(most)(vec a, vec b, vec c)
+{
+#ifdef TERNARY
+    return TERNARY(a, b, c, 0xe8);
+#else
+    return (a & b) | (c & (a | b));
+#endif
+}
+
 /* xoshiro256++ of Blackman and Vigna (2018), a stream for each word of a block. */
 struct N(stream) { vec a[PARTS], b[PARTS], c[PARTS], d[PARTS]; };
 
@@ -31,20 +66,25 @@ struct N(stream) { vec a[PARTS], b[PARTS], c[PARTS], d[PARTS]; };
 INLINE vec N(mixed)(uint64_t key, uint32_t first)
 {
     vec z;
-    for (uint32_t l = 0; l < KERNEL_WIDTH; l++) z[l] = key + (first + l + 1) * 0x9e3779b97f4a7c15u;
+    for (uint32_t l = 0; l < KERNEL_WIDTH; l++) z[l] = (first + l + 1) * 0x9e3779b97f4a7c15u;
+    z += key;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
 }
 
+INLINE void N(seed_part)(struct N(stream) *s, int p, uint64_t key)
+{
+    const uint32_t first = (uint32_t)p * KERNEL_WIDTH;
+    s->a[p] = N(mixed)(key, first);
+    s->b[p] = N(mixed)(key, LGA_LANES + first);
+    s->c[p] = N(mixed)(key, 2 * LGA_LANES + first);
+    s->d[p] = N(mixed)(key, 3 * LGA_LANES + first);
+}
+
 INLINE void N(seed)(struct N(stream) *s, uint64_t key)
 {
-    for (uint32_t p = 0; p < PARTS; p++) {
-        s->a[p] = N(mixed)(key, p * KERNEL_WIDTH);
-        s->b[p] = N(mixed)(key, LGA_LANES + p * KERNEL_WIDTH);
-        s->c[p] = N(mixed)(key, 2 * LGA_LANES + p * KERNEL_WIDTH);
-        s->d[p] = N(mixed)(key, 3 * LGA_LANES + p * KERNEL_WIDTH);
-    }
+    for (int p = 0; p < PARTS; p++) N(seed_part)(s, p, key);
 }
 
 INLINE vec N(next)(struct N(stream) *s, int p)
@@ -79,6 +119,48 @@ INLINE void N(roll)(struct N(stream) *s, struct lga_die die, vec out[PARTS])
     }
 }
 
+/* The same for one vector of a block. */
+INLINE vec N(draw)(struct N(stream) *s, int p, struct lga_die die)
+{
+    vec out = (vec){0} | (die.bits == 0 && die.threshold ? UINT64_MAX : 0);
+    for (int k = 0; k < die.bits; k++) {
+        const vec digit = (vec){0} | -(uint64_t)(die.threshold >> k & 1);
+        out = N(most)(out, N(next)(s, p), digit);       /* "or" where it is set, else "and" */
+    }
+    return out;
+}
+
+/* Of a die that is known when this is compiled, 1 of 3 or 1 of 5. */
+INLINE vec N(draw_known)(struct N(stream) *s, int p, uint32_t threshold)
+{
+    vec out = {0};
+    #pragma GCC unroll 10
+    for (int k = 0; k < LGA_CUT_BITS; k++) {
+        const vec word = N(next)(s, p);
+        out = threshold >> k & 1 ? out | word : out & word;
+    }
+    return out;
+}
+
+INLINE void N(skip)(struct N(stream) *s, int p, uint32_t words)
+{
+    for (uint32_t k = 0; k < words; k++) N(next)(s, p);
+}
+
+/* Dice that few nodes need: each vector's stream is followed no farther than to the last block that
+ * asks, and not at all if none does.  `at` is where it is, in words, once it has begun. */
+struct N(late) { struct N(stream) s; uint32_t at[PARTS]; bool begun[PARTS]; };
+
+/* Brings the stream to the word numbered `to` of a row; of these the caller takes `words`. */
+INLINE void N(reach)(struct N(late) *late, int p, struct lga_dice_source source, uint32_t to,
+                     uint32_t words)
+{
+    if (!late->begun[p]) N(seed_part)(&late->s, p, lga_dice_key(source));
+    late->begun[p] = true;
+    N(skip)(&late->s, p, to - late->at[p]);
+    late->at[p] = to + words;
+}
+
 KERNEL_TARGET static void N(roll_row)(const struct lga_dice *dice, uint64_t key, uint32_t words,
                                       uint64_t *const rows[LGA_DICE])
 {
@@ -105,9 +187,13 @@ INLINE uint64_t N(count)(vec bits)
 
 INLINE bool N(any)(vec bits)
 {
+#ifdef TERNARY
+    return _mm512_test_epi64_mask((__m512i)bits, (__m512i)bits) != 0;
+#else
     uint64_t sum = 0;
     for (int k = 0; k < KERNEL_WIDTH; k++) sum |= bits[k];
     return sum != 0;
+#endif
 }
 
 /* Counts the collisions of a vector of nodes: adds a bit to the number of each, up to the last. */
@@ -265,7 +351,9 @@ KERNEL_TARGET static void N(stream_free)(uint64_t *out, uint32_t words,
     }
 }
 
+#include "model/lga/lga_kernel_choice.h"
 #include "model/lga/lga_kernel_gmlg.h"
+#include "model/lga/lga_kernel_room.h"
 #include "model/lga/lga_kernel_sand.h"
 
 #define INSTANCE(kind, e) \
@@ -306,10 +394,12 @@ static const struct lga_kernel N(kernel) = {
      N(collide_4), N(collide_5), N(collide_6), N(collide_7)},
     N(collide_any), N(stream_free), N(stream_8), N(stream_any),
     N(stop), N(fall_row), N(stream_heap), N(bind),
-    N(survey), N(gmlg_free), N(gmlg_level), N(gmlg_vertical), N(gmlg_any), N(admit), N(arrive)
+    N(survey), N(stirs), N(gmlg_free), N(gmlg_level), N(gmlg_vertical), N(gmlg_any), N(admit),
+    N(arrive)
 };
 
 #undef INSTANCE
+#undef TERNARY
 #undef vec
 #undef INLINE
 #undef PARTS

@@ -1,5 +1,5 @@
 /* lga_kernel_sand.h - the sandpile's own stages as logic on vectors of nodes: part of lga_kernel.h,
- * behind the gmlg, with which it shares small numbers and fair choices.
+ * behind the gmlg, with which it shares how a mover bends.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -97,13 +97,11 @@ KERNEL_TARGET static void N(fall_row)(const struct lga_row_fall *row)
             m[5] |= goes_right;
             if (row->fly) {
                 const struct N(pick) dice = {third[p], fifth[p], coin[p], second[p]};
-                vec count[3] = {{0}}, able[6], from[6], full[6] = {{0}};
+                vec able[6], from[6], full[6] = {{0}};
                 full[4] = wall[0] | N(load)(row->rest_left + w);
                 full[5] = wall[1] | N(load)(row->rest_right + w);
                 N(able_level)(m, full, bend_left[p], able);
-                for (int d = 0; d < 6; d++) N(add_bit)(count, able[d]);
-                N(choose)(able, count, dice, from);
-                for (int d = 0; d < 6; d++) from[d] &= bend[p];
+                N(choose)(able, N(tallied)(able), bend[p], dice, from);
                 N(bend_level)(m, from);
             }
             for (uint32_t d = 0; d < 6; d++) N(store)(row->out + d * row->stride + w, m[d]);

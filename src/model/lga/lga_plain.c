@@ -25,7 +25,8 @@ void lga_plain_roll(struct lga *lga)
                 if (!lga->rolled[k] || lga_dice_stage(&lga->rule, k) != stage) continue;
                 out[k] = lga->rolled[k] + (size_t)row * lga->words;
             }
-            lga_bits_roll(&lga->dice, lga->simd, lga_dice_now(lga, row, stage), lga->words, out);
+            lga_bits_roll(&lga->dice, lga->simd, lga_dice_key(lga_dice_now(lga, row, stage)),
+                          lga->words, out);
         }
     }
 }
