@@ -91,6 +91,20 @@ class Cost(unittest.TestCase):
         self.assertGreater(parts["core"]["per_step"], 0)
         self.assertAlmostEqual(parts["core"]["per_simulated_time"] * 4, parts["core"]["wall"], 3)
 
+    def test_run_tells_what_comes_nearest_when_nothing_is_near_or_fast_enough(self):
+        self.write("0.6")
+        same = ("-s", 'measure.settings=["ed ed.t_c=*1000"]', "-s", "ed.t_c=1e-3")
+        points = self.measure(*same)
+        told = {name: max(point["error"], point["error_noise"]) for name, point in points.items()}
+        done = self.call("run", "gas.cfg", "--accuracy", "1e-9%", "-o", "no", *same)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn(f"the nearest is '{min(told, key=told.get)}',", done.stderr)
+        fastest = min(points, key=lambda name: points[name]["wall_seconds"])
+        done = self.call("run", "gas.cfg", "--budget", "1e-9s", "-o", "no", *same)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn(f"the fastest is '{fastest}',", done.stderr)
+        self.assertFalse(os.path.exists(os.path.join(self.folder, "no")))
+
     def test_a_reference_is_kept_and_a_spoilt_one_is_not_believed(self):
         self.write("0.6")
         few = ("-s", 'measure.settings=["ed ed.t_c=*1000"]', "-s", "ed.t_c=1e-3")

@@ -7,6 +7,7 @@
 #include "bench/cost_cache.h"
 #include "run/folder.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -93,6 +94,29 @@ static json_t *find_table(const struct options *options, char path[FILE_PATH_MAX
     return NULL;
 }
 
+/* Nothing is near or fast enough: tells what comes nearest to it. */
+static bool refuse(const json_t *points, const char *path, const struct options *options,
+                   double budget, struct error *error)
+{
+    const char *accuracy_text = options->values[OPTION_accuracy];
+    const char *budget_text = options->values[OPTION_budget];
+    const json_t *nearest = choose(points, INFINITY, budget);
+    const json_t *best = nearest ? nearest : choose(points, DBL_MAX, INFINITY);
+    char other[200] = "";
+    if (best) {
+        snprintf(other, sizeof other, "; the %s is '%.80s', %.2g %% +- %.2g %%, %.3g s%s",
+                 nearest ? "nearest" : "fastest",
+                 json_string_value(json_object_get(best, "setting")),
+                 100 * json_number_value(json_object_get(best, "error")),
+                 100 * json_number_value(json_object_get(best, "error_noise")),
+                 json_number_value(json_object_get(best, "wall_seconds")),
+                 nearest ? ", and more --seeds of `sandreel cost` lower the noise" : "");
+    }
+    return error_set_code(error, EXIT_VERDICT, "%s holds no setting%s%s%s%s%s", path,
+                          accuracy_text ? " within " : "", accuracy_text ? accuracy_text : "",
+                          budget_text ? " in " : "", budget_text ? budget_text : "", other);
+}
+
 bool cli_cost_choose(struct options *options, json_t **table, struct error *error)
 {
     const char *accuracy_text = options->values[OPTION_accuracy];
@@ -106,20 +130,17 @@ bool cli_cost_choose(struct options *options, json_t **table, struct error *erro
     *table = find_table(options, path, error);
     if (!*table) return false;
     const json_t *point = choose(json_object_get(*table, "points"), accuracy, budget);
-    if (!point) {
-        return error_set_code(error, EXIT_VERDICT, "%s holds no setting%s%s%s%s", path,
-            accuracy_text ? " within " : "", accuracy_text ? accuracy_text : "",
-            budget_text ? " in " : "", budget_text ? budget_text : "");
-    }
+    if (!point) return refuse(json_object_get(*table, "points"), path, options, budget, error);
     size_t index;
     json_t *key;
     json_array_foreach(json_object_get(point, "keys"), index, key) {
         if (options->override_count == OPTIONS_OVERRIDES_MAX) break;
         options->overrides[options->override_count++] = json_string_value(key);
     }
-    fprintf(stderr, "%s: %s, error %.2g %%, about %.3g s\n", path,
+    fprintf(stderr, "%s: %s, error %.2g %% +- %.2g %%, about %.3g s\n", path,
             json_string_value(json_object_get(point, "setting")),
             100 * json_number_value(json_object_get(point, "error")),
+            100 * json_number_value(json_object_get(point, "error_noise")),
             json_number_value(json_object_get(point, "wall_seconds")));
     return true;
 }
