@@ -2,8 +2,8 @@
  *
  * The algorithm of md: leapfrog; grains sorted by cell; a list of pairs with a skin; windows of
  * pairs that touch, worked by SIMD.  It does what any run must: velocities of the present, contacts
- * counted (those that go on are known again in a new list), overlaps watched.  It has no radii, masses or spins, no walls, one
- * strip and one thread.
+ * counted (those that go on are known again in a new list), overlaps watched.  It has no radii,
+ * masses or spins, no walls, one strip and one thread.
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
 #include "bench/stripped.h"
@@ -344,7 +344,8 @@ static void *gas_open(const struct simulation *sim, double *bytes)
         g->ids[k] = grains.id[k];
     }
     *bytes = 2.0 * (sizeof(struct body) + sizeof(struct half)) + sizeof(struct push)
-           + (PAIRS + 1) * sizeof(struct pair) + 5 * sizeof(uint32_t) + sizeof g->cell_first / (double)n;
+           + (PAIRS + 1) * sizeof(struct pair) + 5 * sizeof(uint32_t)
+           + sizeof g->cell_first / (double)n;
     grains_free(&grains);
     if (done) {
         list_pairs(g);

@@ -41,6 +41,32 @@ static bool told(const char *fragment)
     return false;
 }
 
+static void test_an_integer_of_any_length_keeps_its_value(void **unused)
+{
+    (void)unused;
+    /* 2^32 + 5 and 1e11 lose their upper half in 32 bits. */
+    struct scene *scene = LOAD("grains.[0].stiffness=100000000000", "grains.density=0x100000005",
+        "gravity=(0, -99999999999)", "until=2147483648", "title=\"17179869184\"");
+    CHECK(scene != NULL);
+    CHECK(scene->species[0].stiffness == 1e11 && scene->species[0].density == 4294967301.0);
+    CHECK(scene->gravity[1] == -99999999999.0 && scene->until == 2147483648.0);
+    CHECK(strcmp(scene->title, "17179869184") == 0);
+    scene_free(scene);
+    scene = LOAD("grains.[0].stiffness=100000000000000000000000000000");
+    CHECK(scene != NULL && scene->species[0].stiffness == 1e29);
+    scene_free(scene);
+    scene = LOAD("view.size=[4294967936,480]");         /* 2^32 + 640 */
+    CHECK(scene == NULL && told("view.size"));
+    const struct scene_request request = {.path = "long.cfg", .text = "# 99999999999\nuntil = "
+        "10000000000; box = [0, 0, 10, 10];\ngrains = ({ radius = 0.5; stiffness = 30000000000L; "
+        "restitution = 1; "
+        "});\nplacements = ({ count = 20; });\n"};
+    memset(&findings, 0, sizeof findings);
+    scene = scene_load(&request, &findings);
+    CHECK(scene != NULL && scene->until == 1e10 && scene->species[0].stiffness == 3e10);
+    scene_free(scene);
+}
+
 static void test_overrides_replace_add_and_append(void **unused)
 {
     (void)unused;
@@ -219,6 +245,7 @@ static void test_what_is_no_scene_file_is_refused_as_an_include_and_as_a_scene(v
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_an_integer_of_any_length_keeps_its_value),
         cmocka_unit_test(test_overrides_replace_add_and_append),
         cmocka_unit_test(test_every_key_of_every_group_is_reached),
         cmocka_unit_test(test_a_typing_error_names_the_nearest_key),

@@ -8,6 +8,7 @@
 #include "scene/include.h"
 
 #include "base/file.h"
+#include "scene/integers.h"
 #include "scene/tree.h"
 
 #include <stdio.h>
@@ -73,6 +74,17 @@ static int line_of(const char *begin, const char *at)
 
 static bool check_text(struct includes *includes, const char *text, const char *file, int depth);
 
+/* Included files are read as they are, so what would be cut there is refused. */
+static bool check_integers(struct includes *includes, const char *text, const char *file)
+{
+    const char *end, *at = integers_long(text, &end);
+    if (!at) return true;
+    findings_tell_at(includes->findings, FINDING_ERROR, file, line_of(text, at), "%.*s has more "
+                     "than 32 bits, which an included file cannot hold without a mark; write "
+                     "%.*sL, or a real number", (int)(end - at), at, (int)(end - at), at);
+    return false;
+}
+
 /* One included file.  False with a reason. */
 static bool check_file(struct includes *includes, const char *name, int depth,
                        char why[static 2 * FILE_PATH_MAX])
@@ -95,7 +107,8 @@ static bool check_file(struct includes *includes, const char *name, int depth,
     }
     const unsigned errors = includes->findings->errors;
     bool sound = strlen(text) == size;
-    if (sound) sound = check_text(includes, text, path, depth + 1);
+    if (sound) sound = check_text(includes, text, path, depth + 1)
+                    && check_integers(includes, text, path);
     else snprintf(why, 2 * FILE_PATH_MAX, "%s holds zero bytes, so it is no scene file", name);
     if (includes->findings->errors > errors) why[0] = 0;        /* told already */
     free(text);

@@ -8,6 +8,7 @@
 #include "scene/tree.h"
 
 #include "scene/include.h"
+#include "scene/integers.h"
 
 #include <ctype.h>
 #include <libconfig.h>
@@ -132,7 +133,7 @@ struct tree *tree_read(struct arena *arena, const char *text, const char *file,
                        const char *include_folder, struct findings *findings)
 {
     if (!include_check(text, file, include_folder, findings)) return NULL;
-    char *copy = strdup(text);
+    char *copy = integers_marked(text);
     if (!copy) return NULL;
     brackets_to_parentheses(copy);
     config_t config;
@@ -153,10 +154,10 @@ struct tree *tree_read(struct arena *arena, const char *text, const char *file,
 struct tree *tree_value(struct arena *arena, const char *text, const char *file, int line)
 {
     struct tree *node = NULL;
-    char *copy = NULL;
+    char *copy = NULL, *marked = integers_marked(text);
     config_t config;
     config_init(&config);
-    if (asprintf(&copy, "value = %s;", text) >= 0) {
+    if (marked && asprintf(&copy, "value = %s;", marked) >= 0) {
         brackets_to_parentheses(copy);
         const bool sound = !include_used(copy) && config_read_string(&config, copy);
         config_setting_t *root = sound ? config_root_setting(&config) : NULL;
@@ -166,6 +167,7 @@ struct tree *tree_value(struct arena *arena, const char *text, const char *file,
         }
         free(copy);
     }
+    free(marked);
     config_destroy(&config);
     if (!node) {
         node = node_take(arena, file, line);
