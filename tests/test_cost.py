@@ -105,6 +105,11 @@ class Cost(unittest.TestCase):
         self.assertIn(f"the fastest is '{fastest}',", done.stderr)
         self.assertFalse(os.path.exists(os.path.join(self.folder, "no")))
 
+    def test_a_table_without_a_setting_that_runs_is_told_and_drawn_all_the_same(self):
+        self.write("0.6")
+        self.measure("-s", 'measure.settings=["ed ed.t_c=no"]')
+        self.assertTrue(os.path.exists(os.path.join(self.folder, "gas-cost", "picture.png")))
+
     def test_a_reference_is_kept_and_a_spoilt_one_is_not_believed(self):
         self.write("0.6")
         few = ("-s", 'measure.settings=["ed ed.t_c=*1000"]', "-s", "ed.t_c=1e-3")

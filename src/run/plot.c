@@ -147,6 +147,7 @@ static void write_script(FILE *out, const struct chart *chart, const char *stem,
         if (!(formats >> f & 1)) continue;
         fprintf(out, "set terminal %s\nset output '%s.%s'\nplot \\\n", formats_list[f].terminal,
                 stem, formats_list[f].ending);
+        if (chart->count == 0) fputs("NaN notitle\n", out);     /* the axes, at least */
         for (uint32_t c = 0; c < chart->count; c++) {
             if (chart->curves[c].style == CHART_CELLS) {
                 write_cells(out, &chart->curves[c], stem, f == PLOT_BIT_text);

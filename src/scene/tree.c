@@ -155,20 +155,23 @@ struct tree *tree_value(struct arena *arena, const char *text, const char *file,
 {
     struct tree *node = NULL;
     char *copy = NULL, *marked = integers_marked(text);
+    const bool written = marked && asprintf(&copy, "value = %s;", marked) >= 0;
+    free(marked);
+    if (!written) {
+        arena->failed = true;           /* a text in its place would be a lie */
+        return NULL;
+    }
+    brackets_to_parentheses(copy);
     config_t config;
     config_init(&config);
-    if (marked && asprintf(&copy, "value = %s;", marked) >= 0) {
-        brackets_to_parentheses(copy);
-        const bool sound = !include_used(copy) && config_read_string(&config, copy);
-        config_setting_t *root = sound ? config_root_setting(&config) : NULL;
-        if (root && config_setting_length(root) == 1) {
-            node = node_copy(arena, config_setting_get_elem(root, 0), file, line ? line : -1);
-            if (node) node->name[0] = 0;
-        }
-        free(copy);
+    const bool sound = !include_used(copy) && config_read_string(&config, copy);
+    config_setting_t *root = sound ? config_root_setting(&config) : NULL;
+    if (root && config_setting_length(root) == 1) {
+        node = node_copy(arena, config_setting_get_elem(root, 0), file, line ? line : -1);
+        if (node) node->name[0] = 0;
     }
-    free(marked);
     config_destroy(&config);
+    free(copy);
     if (!node) {
         node = node_take(arena, file, line);
         if (!node) return NULL;
