@@ -55,6 +55,8 @@ static void test_an_integer_of_any_length_keeps_its_value(void **unused)
     scene = LOAD("grains.[0].stiffness=100000000000000000000000000000");
     CHECK(scene != NULL && scene->species[0].stiffness == 1e29);
     scene_free(scene);
+    scene = LOAD("grains.[0].stiffness=0xffffffffffffffff");   /* would be -1 */
+    CHECK(scene == NULL && told("must be a number"));
     scene = LOAD("view.size=[4294967936,480]");         /* 2^32 + 640 */
     CHECK(scene == NULL && told("view.size"));
     const struct scene_request request = {.path = "long.cfg", .text = "# 99999999999\nuntil = "

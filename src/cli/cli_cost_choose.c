@@ -41,19 +41,22 @@ static bool read_value(const char *option, const char *text, double *value, stru
                           text);
 }
 
+static double number_in(const json_t *point, const char *key)
+{
+    return json_number_value(json_object_get(point, key));
+}
+
 static const json_t *choose(const json_t *points, double accuracy, double budget)
 {
     const json_t *best = NULL;
     size_t index;
     json_t *point;
     json_array_foreach(points, index, point) {
-        const double wall = json_number_value(json_object_get(point, "wall_seconds"));
-        const double told = fmax(json_number_value(json_object_get(point, "error")),
-                                 json_number_value(json_object_get(point, "error_noise")));
+        const double wall = number_in(point, "wall_seconds");
+        const double told = fmax(number_in(point, "error"), number_in(point, "error_noise"));
         if (told > accuracy || wall > budget) continue;
-        const double best_wall = json_number_value(json_object_get(best, "wall_seconds"));
-        const double best_told = fmax(json_number_value(json_object_get(best, "error")),
-                                      json_number_value(json_object_get(best, "error_noise")));
+        const double best_wall = number_in(best, "wall_seconds");
+        const double best_told = fmax(number_in(best, "error"), number_in(best, "error_noise"));
         const bool better = isfinite(accuracy) ? wall < best_wall : told < best_told;
         if (!best || better) best = point;
     }
@@ -107,9 +110,9 @@ static bool refuse(const json_t *points, const char *path, const struct options 
         snprintf(other, sizeof other, "; the %s is '%.80s', %.2g %% +- %.2g %%, %.3g s%s",
                  nearest ? "nearest" : "fastest",
                  json_string_value(json_object_get(best, "setting")),
-                 100 * json_number_value(json_object_get(best, "error")),
-                 100 * json_number_value(json_object_get(best, "error_noise")),
-                 json_number_value(json_object_get(best, "wall_seconds")),
+                 100 * number_in(best, "error"),
+                 100 * number_in(best, "error_noise"),
+                 number_in(best, "wall_seconds"),
                  nearest ? ", and more --seeds of `sandreel cost` lower the noise" : "");
     }
     return error_set_code(error, EXIT_VERDICT, "%s holds no setting%s%s%s%s%s", path,
@@ -139,8 +142,8 @@ bool cli_cost_choose(struct options *options, json_t **table, struct error *erro
     }
     fprintf(stderr, "%s: %s, error %.2g %% +- %.2g %%, about %.3g s\n", path,
             json_string_value(json_object_get(point, "setting")),
-            100 * json_number_value(json_object_get(point, "error")),
-            100 * json_number_value(json_object_get(point, "error_noise")),
-            json_number_value(json_object_get(point, "wall_seconds")));
+            100 * number_in(point, "error"),
+            100 * number_in(point, "error_noise"),
+            number_in(point, "wall_seconds"));
     return true;
 }

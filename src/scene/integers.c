@@ -67,8 +67,8 @@ char *integers_marked(const char *text)
         memcpy(to, from, (size_t)(end - from));
         to += end - from;
         errno = 0;
-        strtoll(at, NULL, 0);
-        const bool real = errno == ERANGE && !is_hexadecimal(at);
+        strtoll(at, NULL, is_hexadecimal(at) ? 16 : 10);
+        const bool real = errno == ERANGE;      /* a hexadecimal one is none, and refused so */
         memcpy(to, real ? ".0" : "L", real ? 2 : 1);
         to += real ? 2 : 1;
     }
